@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ray casting over the curves of a plane scene.
+#ifndef FLATLIGHT_CORE_PLANE_RAY_CASTER_H_
+#define FLATLIGHT_CORE_PLANE_RAY_CASTER_H_
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/math/vec.h"
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+// A point rays leave from or arrive at. On a curve `element` names the piece, so that a ray never hits the line or circle it
+// leaves at the place it leaves it, and no epsilon is needed.
+struct SurfacePoint {
+  Point2 position;
+  ElementId element = ElementId::kNone;
+};
+
+struct Hit {
+  double distance = 0;  // In units of the direction's length.
+  ElementId element = ElementId::kNone;
+  Point2 position;
+  Vector2 normal;  // Unit; the element's front, not turned toward the ray.
+};
+
+class RayCaster {
+ public:
+  explicit RayCaster(std::shared_ptr<const Scene> scene);
+  ~RayCaster();
+
+  // The first curve hit by from.position + t direction, t > 0. Ties break by (distance, element). Closed at shared end
+  // points: a ray through a point where two curves meet, to the accuracy of the coordinates, hits one of them.
+  std::optional<Hit> ClosestHit(const SurfacePoint& from, Vector2 direction) const;
+
+  // True if nothing lies between two points, their own places on their own curves aside.
+  bool Visible(const SurfacePoint& from, const SurfacePoint& to) const;
+
+  const Scene& scene() const { return *scene_; }
+
+ private:
+  struct Tree;
+  std::shared_ptr<const Scene> scene_;
+  std::unique_ptr<const Tree> tree_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_PLANE_RAY_CASTER_H_

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_RENDER_FIELD_H_
+#define FLATLIGHT_CORE_RENDER_FIELD_H_
+
+#include <optional>
+#include <vector>
+
+namespace flatlight {
+
+// Values at the points of one probe, in world units. Arrays are flat (point, then channel); one that was not asked for, or
+// that the method does not give, is empty.
+struct ProbeField {
+  std::vector<double> irradiance;      // W/m
+  std::vector<double> standard_error;  // W/m
+  std::vector<double> gradient;        // W/m^2
+  std::vector<double> gradient_error;
+  std::vector<double> hessian;         // W/m^3
+  std::vector<double> hessian_error;
+  std::vector<double> samples;         // Paths; one value a point.
+};
+
+// The state of a rendering: cumulative, a newer one replaces an older one.
+struct Field {
+  std::vector<ProbeField> probes;
+  std::optional<double> error_bound;  // Deterministic methods: no irradiance is further from the truth. W/m.
+  double rays = 0;
+};
+
+struct RenderProgress {
+  double fraction = 0;  // In [0, 1].
+  double samples = 0;   // Paths of the point that has most.
+  double rays = 0;
+  std::optional<double> remaining_seconds;
+  // Largest over the points: standard error / max(irradiance, 1 % of the probe's mean).
+  std::optional<double> relative_error;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_RENDER_FIELD_H_

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// What will be done, decided before any ray is cast, and why.
+#ifndef FLATLIGHT_CORE_RENDER_PLAN_H_
+#define FLATLIGHT_CORE_RENDER_PLAN_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/render/settings.h"
+#include "core/scene/diagnostic.h"
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+enum class SkipDecision : std::uint8_t { kTaken, kNotApplicable, kDisabled };
+
+struct SkipEntry {
+  std::string name;
+  SkipDecision decision = SkipDecision::kNotApplicable;
+  std::string reason;
+};
+
+struct PlanPass {
+  std::string name;
+  double points = 0;
+  double samples = 0;        // Paths a point; 0 if deterministic or open-ended.
+  double expected_rays = 0;  // 0 if none is needed.
+};
+
+struct Plan {
+  // Settings as they apply: method, derivatives, seed and (for path tracing) samples are always there; samples is absent
+  // if the end is left to target_error or time_limit.
+  Settings settings;
+  std::vector<SkipEntry> skips;
+  std::vector<PlanPass> passes;
+  std::string summary;
+
+  bool Takes(const std::string& skip) const {
+    for (const SkipEntry& entry : skips)
+      if (entry.name == skip) return entry.decision == SkipDecision::kTaken;
+    return false;
+  }
+};
+
+// All names that Settings::no_skip may hold.
+const std::vector<std::string>& SkipNames();
+
+// "exact", "path-tracing".
+const std::vector<std::string>& MethodNames();
+
+// Absent if the settings have mistakes or don't suit the scene; `diagnostics` then says which ("settings.samples").
+std::optional<Plan> MakePlan(const Scene& scene, const Settings& settings, Diagnostics& diagnostics);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_RENDER_PLAN_H_

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one door to transport: a scene and a plan become a field, in slices that the caller paces.
+#ifndef FLATLIGHT_CORE_RENDER_RENDERING_H_
+#define FLATLIGHT_CORE_RENDER_RENDERING_H_
+
+#include <cstdint>
+#include <memory>
+
+#include "core/execution/cancellation.h"
+#include "core/execution/clock.h"
+#include "core/execution/executor.h"
+#include "core/render/field.h"
+#include "core/render/plan.h"
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+enum class EndReason : std::uint8_t { kConverged, kSamplesDone, kTargetReached, kTimeLimit };
+
+// How far a rendering has come is a function of the blocks done, never of who did them: for equal blocks done the field has
+// equal bits, whatever the threads, the slices and the budgets were.
+class Rendering {
+ public:
+  virtual ~Rendering() = default;
+
+  // Works for about `budget` (checked between shards of a few milliseconds), until done or cancelled. A cancelled call
+  // leaves the blocks it had finished. Not to be called from two threads at once, nor together with the calls below.
+  virtual void Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
+                       Clock::Duration budget) = 0;
+  virtual bool done() const = 0;
+  virtual EndReason end_reason() const = 0;  // Requires done().
+  virtual RenderProgress Progress() const = 0;
+  virtual std::shared_ptr<const Field> Snapshot() const = 0;
+};
+
+// `plan` must come from MakePlan for this scene.
+std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, const Plan& plan);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_RENDER_RENDERING_H_

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_RENDER_SETTINGS_H_
+#define FLATLIGHT_CORE_RENDER_SETTINGS_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flatlight {
+
+enum class Method : std::uint8_t { kExact, kPathTracing };
+enum class Derivatives : std::uint8_t { kNone, kGradient, kHessian };
+
+// What the caller asks for; absent means the method's default. See settings.proto for units and ranges.
+struct Settings {
+  std::optional<Method> method;
+  std::optional<std::uint32_t> samples;
+  std::optional<std::uint32_t> max_bounces;
+  std::optional<std::uint32_t> seed;
+  std::optional<Derivatives> derivatives;
+  std::optional<double> target_error;
+  std::optional<double> time_limit;  // s
+  std::optional<std::uint32_t> threads;
+  std::vector<std::string> no_skip;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_RENDER_SETTINGS_H_

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene as its author wrote it: world units, names, nothing checked. BuildScene checks it.
+#ifndef FLATLIGHT_CORE_SCENE_DESCRIPTION_H_
+#define FLATLIGHT_CORE_SCENE_DESCRIPTION_H_
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/math/vec.h"
+
+namespace flatlight {
+
+enum class Side : std::uint8_t { kFront, kBack };
+
+// Authors give one value (grey) or three.
+using SpectrumValues = std::vector<double>;
+
+struct LambertianDescription {
+  SpectrumValues reflectance;
+};
+
+struct MaterialDescription {
+  std::string name;
+  std::variant<std::monostate, LambertianDescription> kind;
+};
+
+struct SegmentDescription {
+  Point2 a;
+  Point2 b;
+};
+
+struct PolylineDescription {
+  std::vector<Point2> points;
+  bool closed = false;
+};
+
+struct ArcDescription {
+  Point2 center;
+  double radius = 0;
+  double start_angle = 0;
+  double sweep_angle = 0;
+};
+
+struct EmissionDescription {
+  SpectrumValues radiance;
+  bool two_sided = false;
+};
+
+struct CurveDescription {
+  std::string name;
+  std::variant<std::monostate, SegmentDescription, PolylineDescription, ArcDescription> shape;
+  std::string material;
+  std::optional<EmissionDescription> emission;
+};
+
+struct ProbePointDescription {
+  Point2 position;
+  Vector2 normal;
+};
+
+struct ProbeDescription {
+  std::string name;
+  std::optional<std::string> curve;
+  std::optional<std::uint32_t> count;
+  std::optional<double> from;
+  std::optional<double> to;
+  std::optional<Side> side;
+  std::vector<ProbePointDescription> points;
+};
+
+struct SceneDescription {
+  std::string name;
+  std::vector<MaterialDescription> materials;
+  std::vector<CurveDescription> curves;
+  std::vector<ProbeDescription> probes;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_SCENE_DESCRIPTION_H_

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// The world that transport works on: validated, immutable, normalised.
+//
+// Coordinates are normalised: a point of the world is frame.origin + frame.scale * p with p in [-1, 1]^2 for every curve.
+// The scale is a power of two, so normalising rounds nothing but the shift. Radiance is normalised by a power of two too.
+#ifndef FLATLIGHT_CORE_SCENE_SCENE_H_
+#define FLATLIGHT_CORE_SCENE_SCENE_H_
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/math/vec.h"
+#include "core/scene/description.h"
+#include "core/scene/diagnostic.h"
+#include "core/scene/spectrum.h"
+
+namespace flatlight {
+
+enum class CurveId : std::uint32_t { kNone = 0xffffffff };
+enum class ElementId : std::uint32_t { kNone = 0xffffffff };
+
+// A straight or arced piece of a curve, running from a to b; the front is on its left. Normalised coordinates.
+struct Element {
+  enum class Kind : std::uint8_t { kSegment, kArc };
+  Kind kind = Kind::kSegment;
+  bool full_circle = false;
+  CurveId curve = CurveId::kNone;
+  Point2 a;
+  Point2 b;
+  double length = 0;
+  double arc_begin = 0;  // Arc length from the curve's first point to a.
+  // Segments and arcs lying on one line or circle share a carrier: a ray that leaves one cannot cross another at once.
+  std::uint32_t carrier = 0;
+  // Arcs only. The arc turns about center by sweep_angle (positive: counter-clockwise) from start_angle.
+  Point2 center;
+  double radius = 0;
+  double start_angle = 0;
+  double sweep_angle = 0;
+
+  // +1 if the front faces the centre (counter-clockwise), -1 if it faces away, 0 if straight.
+  double Orientation() const { return kind == Kind::kSegment ? 0 : sweep_angle > 0 ? 1 : -1; }
+};
+
+struct Curve {
+  std::string name;
+  Spectrum reflectance;
+  Spectrum radiance;  // Normalised. Black if the curve does not emit.
+  bool two_sided = false;
+  std::uint32_t first_element = 0;
+  std::uint32_t element_count = 0;
+  double length = 0;
+
+  bool Emits() const { return !radiance.IsBlack(); }
+  // Radiance leaving one of the curve's sides.
+  Spectrum EmittedRadiance(Side side) const { return side == Side::kFront || two_sided ? radiance : Spectrum{}; }
+};
+
+// A point at which irradiance is wanted. Normalised coordinates.
+struct Receiver {
+  Point2 position;
+  Vector2 normal;        // Unit, toward the side that receives.
+  Vector2 tangent;       // Unit, along increasing arc length; (normal.y, -normal.x) for a free point.
+  double curvature = 0;  // kappa: d(tangent)/d(arc length) = kappa * normal.
+  ElementId element = ElementId::kNone;  // The piece it lies on.
+  double arc_length = 0;
+};
+
+struct Probe {
+  std::string name;
+  CurveId curve = CurveId::kNone;  // kNone: free points.
+  std::vector<Receiver> receivers;
+};
+
+struct Frame {
+  Point2 origin;
+  double scale = 1;           // m per normalised unit of length.
+  double radiance_scale = 1;  // W/(rad m) per normalised unit of radiance.
+};
+
+// What the planner asks.
+struct SceneTraits {
+  std::size_t curves = 0;
+  std::size_t elements = 0;
+  std::size_t emitting_curves = 0;
+  std::size_t probe_points = 0;
+  double max_reflectance = 0;
+  bool grey = true;            // All channels equal everywhere.
+  bool has_arcs = false;
+};
+
+class Scene {
+ public:
+  const std::string& name() const { return name_; }
+  int channels() const { return channels_; }
+  const Frame& frame() const { return frame_; }
+  // Normalised coordinates are known to this distance: rounding of the input and of the shift.
+  double coordinate_error() const { return coordinate_error_; }
+  const std::vector<Element>& elements() const { return elements_; }
+  const std::vector<Curve>& curves() const { return curves_; }
+  const std::vector<Probe>& probes() const { return probes_; }
+  const Element& element(ElementId id) const { return elements_[static_cast<std::size_t>(id)]; }
+  const Curve& curve(CurveId id) const { return curves_[static_cast<std::size_t>(id)]; }
+  const Curve& curve_of(ElementId id) const { return curve(element(id).curve); }
+  const SceneTraits& traits() const { return traits_; }
+  // SHA-256 over geometry, materials and lights, and over probes; 64 hexadecimal digits. Names don't count.
+  const std::string& world_hash() const { return world_hash_; }
+  const std::string& probe_hash() const { return probe_hash_; }
+
+  Point2 ToWorld(Point2 p) const { return {frame_.origin.x + frame_.scale * p.x, frame_.origin.y + frame_.scale * p.y}; }
+
+ private:
+  friend class SceneBuilder;
+  std::string name_;
+  int channels_ = 1;
+  Frame frame_;
+  double coordinate_error_ = 0;
+  std::vector<Element> elements_;
+  std::vector<Curve> curves_;
+  std::vector<Probe> probes_;
+  SceneTraits traits_;
+  std::string world_hash_;
+  std::string probe_hash_;
+};
+
+// Null if the description has mistakes; all of them are then in `diagnostics`.
+std::shared_ptr<const Scene> BuildScene(const SceneDescription& description, Diagnostics& diagnostics);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_SCENE_SCENE_H_
