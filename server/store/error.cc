@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/error.h"
+
+#include <cstdlib>
+
+#include "absl/strings/cord.h"
+
+namespace flatlight {
+namespace {
+
+constexpr char kReason[] = "flatlight/reason";
+constexpr char kQuotaSubject[] = "flatlight/quota-subject";
+constexpr char kRetryMilliseconds[] = "flatlight/retry-milliseconds";
+
+std::string Payload(const absl::Status& error, const char* key) {
+  const auto payload = error.GetPayload(key);
+  return payload ? std::string(*payload) : std::string();
+}
+
+}  // namespace
+
+absl::Status MakeError(absl::StatusCode code, const std::string& reason, const std::string& message) {
+  absl::Status error(code, message);
+  error.SetPayload(kReason, absl::Cord(reason));
+  return error;
+}
+
+absl::Status MakeQuotaError(const std::string& reason, const std::string& subject, const std::string& message,
+                            std::chrono::milliseconds retry_after) {
+  absl::Status error = MakeError(absl::StatusCode::kResourceExhausted, reason, message);
+  error.SetPayload(kQuotaSubject, absl::Cord(subject));
+  error.SetPayload(kRetryMilliseconds, absl::Cord(std::to_string(retry_after.count())));
+  return error;
+}
+
+std::string ReasonOf(const absl::Status& error) { return Payload(error, kReason); }
+
+std::optional<QuotaViolation> QuotaViolationOf(const absl::Status& error) {
+  const std::string subject = Payload(error, kQuotaSubject);
+  if (subject.empty()) return std::nullopt;
+  const std::string milliseconds = Payload(error, kRetryMilliseconds);
+  return QuotaViolation{subject, std::chrono::milliseconds(std::strtoll(milliseconds.c_str(), nullptr, 10))};
+}
+
+}  // namespace flatlight

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// A job: what was asked for (never changes) and how far it is (a value, replaced as a whole).
+#ifndef FLATLIGHT_SERVER_STORE_JOB_H_
+#define FLATLIGHT_SERVER_STORE_JOB_H_
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "core/render/field.h"
+#include "core/render/plan.h"
+#include "core/render/rendering.h"
+#include "core/scene/scene.h"
+#include "server/store/job_id.h"
+
+namespace flatlight {
+
+using WallTime = std::chrono::system_clock::time_point;
+
+struct JobSpec {
+  JobId id;
+  std::string owner;  // The caller that made it.
+  std::shared_ptr<const Scene> scene;
+  Settings settings;  // As requested.
+  Plan plan;
+  WallTime create_time;
+};
+
+enum class JobPhase : std::uint8_t { kQueued, kRunning, kSucceeded, kFailed, kCancelled };
+
+inline bool HasEnded(JobPhase phase) { return phase != JobPhase::kQueued && phase != JobPhase::kRunning; }
+
+// When values last changed: for each probe, for each run of kPoints points, the sequence of the state that brought the
+// present values. So a reader that knows the state of some sequence is told only what is newer.
+struct FieldVersions {
+  static constexpr std::size_t kPoints = 512;
+  std::vector<std::vector<std::uint64_t>> changed;
+};
+
+struct JobState {
+  std::uint64_t sequence = 1;  // Grows by one with every state of the job.
+  JobPhase phase = JobPhase::kQueued;
+  RenderProgress progress;
+  double elapsed_seconds = 0;  // Since the job started.
+  double cpu_seconds = 0;      // Processor time of all threads that worked for the job.
+  std::optional<WallTime> start_time;
+  std::optional<WallTime> end_time;
+  std::optional<EndReason> end_reason;  // Of a job that succeeded.
+  absl::Status error;                   // Of a job that failed.
+  std::shared_ptr<const Field> field;   // Null before the first picture.
+  FieldVersions versions;               // Of `field`.
+};
+
+struct JobRecord {
+  std::shared_ptr<const JobSpec> spec;
+  std::shared_ptr<const JobState> state;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_STORE_JOB_H_

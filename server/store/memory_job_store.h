@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_STORE_MEMORY_JOB_STORE_H_
+#define FLATLIGHT_SERVER_STORE_MEMORY_JOB_STORE_H_
+
+#include <deque>
+#include <map>
+#include <mutex>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+
+#include "absl/base/thread_annotations.h"
+#include "core/execution/clock.h"
+#include "server/store/job_store.h"
+
+namespace flatlight {
+
+// Jobs that live as long as the process.
+class MemoryJobStore final : public JobStore {
+ public:
+  struct Limits {
+    std::size_t max_jobs = 1000;
+    double max_bytes = 4e9;  // Of scenes and fields of all jobs, estimated.
+    std::size_t max_requests = 100'000;
+  };
+  MemoryJobStore(const Limits& limits, const Clock& clock) : limits_(limits), clock_(clock) {}
+
+  absl::StatusOr<std::optional<JobId>> FindRequest(const RequestKey& key) override;
+  absl::StatusOr<JobRecord> Insert(JobRecord job, const std::optional<RequestKey>& key) override;
+  absl::Status Update(const JobId& id, std::shared_ptr<const JobState> state) override;
+  absl::StatusOr<JobRecord> Get(const JobId& id) override;
+  JobPage List(std::optional<std::uint64_t> before, std::size_t limit) override;
+  absl::Status Delete(const JobId& id) override;
+
+ private:
+  struct Request {
+    std::string fingerprint;
+    JobId job;
+  };
+  using Name = std::tuple<std::string, std::string, std::string>;  // Caller, method, request id.
+
+  absl::StatusOr<std::optional<JobId>> FindRequestLocked(const RequestKey& key) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::Status MakeRoom(double bytes) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Erase(std::map<std::uint64_t, JobRecord>::iterator job) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+
+  const Limits limits_;
+  const Clock& clock_;
+  std::mutex mutex_;
+  std::uint64_t next_number_ ABSL_GUARDED_BY(mutex_) = 1;
+  double bytes_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::map<std::uint64_t, JobRecord> jobs_ ABSL_GUARDED_BY(mutex_);  // By number: in order of creation.
+  std::unordered_map<JobId, std::uint64_t> numbers_ ABSL_GUARDED_BY(mutex_);
+  std::map<Name, Request> requests_ ABSL_GUARDED_BY(mutex_);
+  std::deque<std::pair<Clock::Time, Name>> request_ages_ ABSL_GUARDED_BY(mutex_);  // Oldest first.
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_STORE_MEMORY_JOB_STORE_H_

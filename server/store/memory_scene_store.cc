@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/memory_scene_store.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/store/error.h"
+
+namespace flatlight {
+namespace {
+
+constexpr std::chrono::minutes kIdle{1};
+constexpr std::chrono::milliseconds kRetryAfter{10'000};
+
+absl::Status NoSuchScene(const std::string& sha256) {
+  return MakeError(absl::StatusCode::kNotFound, "SCENE_NOT_FOUND", "scenes/" + sha256 + " does not exist");
+}
+
+absl::Status BadUpload(const std::string& reason, const std::string& message) {
+  return MakeError(absl::StatusCode::kInvalidArgument, reason, message);
+}
+
+}  // namespace
+
+absl::StatusOr<std::uint64_t> MemorySceneStore::Upload(const std::string& sha256, std::uint64_t total_bytes,
+                                                       std::uint64_t offset, std::string_view data) {
+  if (!IsSha256(sha256)) return BadUpload("BAD_HASH", "sha256 must be 64 lower-case hexadecimal digits");
+  if (total_bytes == 0 || total_bytes > limits_.max_scene_bytes) {
+    return BadUpload("SCENE_TOO_BIG", "total_bytes is " + std::to_string(total_bytes) + "; allowed: 1 to " +
+                                          std::to_string(limits_.max_scene_bytes));
+  }
+  std::shared_ptr<PartialUpload> upload;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto number = numbers_.find(sha256); number != numbers_.end()) {
+      const std::uint64_t there = scenes_.at(number->second).bytes->size();
+      if (there == total_bytes) return there;
+      return BadUpload("TOTAL_CHANGED", "the scene with this hash has " + std::to_string(there) +
+                                            " bytes, not total_bytes = " + std::to_string(total_bytes));
+    }
+    if (data.empty() && uploads_.count(sha256) == 0) return std::uint64_t{0};
+    auto opened = OpenUpload(sha256, total_bytes);
+    if (!opened.ok()) return opened.status();
+    upload = *opened;
+  }
+  const std::lock_guard lock(upload->mutex);
+  const std::uint64_t there = upload->bytes ? upload->bytes->size() : 0;
+  if (upload->closed) {
+    return MakeError(absl::StatusCode::kAborted, "UPLOAD_CLOSED",
+                     "this upload has just ended; ask how many bytes are there");
+  }
+  if (upload->total_bytes != total_bytes) {
+    return BadUpload("TOTAL_CHANGED", "total_bytes is " + std::to_string(total_bytes) + "; earlier calls said " +
+                                          std::to_string(upload->total_bytes));
+  }
+  if (data.empty()) return there;
+  if (offset != there) {
+    return MakeError(absl::StatusCode::kOutOfRange, "WRONG_OFFSET",
+                     "offset is " + std::to_string(offset) + "; " + std::to_string(there) + " bytes are there");
+  }
+  if (data.size() > total_bytes - there) {
+    return BadUpload("TOO_MANY_BYTES", "data has " + std::to_string(data.size()) + " bytes; " +
+                                           std::to_string(total_bytes - there) + " are missing");
+  }
+  if (absl::Status room = Reserve(data.size()); !room.ok()) return room;
+  upload->bytes->append(data);
+  upload->hash.Add(data);
+  if (upload->bytes->size() == total_bytes) return Complete(sha256, *upload);
+  return std::uint64_t{upload->bytes->size()};
+}
+
+absl::StatusOr<std::shared_ptr<MemorySceneStore::PartialUpload>> MemorySceneStore::OpenUpload(
+    const std::string& sha256, std::uint64_t total_bytes) {
+  const Clock::Time now = clock_.Now();
+  if (const auto found = uploads_.find(sha256); found != uploads_.end()) {
+    found->second->last_use = now;
+    return found->second;
+  }
+  if (scenes_.size() >= limits_.max_scenes) {
+    return MakeQuotaError("TOO_MANY_SCENES", "max_scenes",
+                          "the server holds " + std::to_string(scenes_.size()) + " scenes; delete one first",
+                          kRetryAfter);
+  }
+  if (uploads_.size() >= limits_.max_uploads) {
+    const auto idlest = std::min_element(uploads_.begin(), uploads_.end(), [](const auto& a, const auto& b) {
+      return a.second->last_use < b.second->last_use;
+    });
+    const std::shared_ptr<PartialUpload> victim = idlest->second;
+    // One whose mutex is held elsewhere is in use, not idle.
+    const std::unique_lock lock(victim->mutex, std::try_to_lock);
+    if (!lock || now - victim->last_use < kIdle) {
+      return MakeQuotaError(
+          "TOO_MANY_UPLOADS", "max_uploads",
+          std::to_string(uploads_.size()) + " uploads are under way; allowed: " + std::to_string(limits_.max_uploads),
+          kRetryAfter);
+    }
+    victim->closed = true;
+    used_bytes_ -= victim->bytes->size();
+    uploads_.erase(idlest);
+  }
+  auto upload = std::make_shared<PartialUpload>();
+  upload->total_bytes = total_bytes;
+  upload->last_use = now;
+  uploads_[sha256] = upload;
+  return upload;
+}
+
+absl::Status MemorySceneStore::Reserve(std::uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  if (used_bytes_ + bytes > limits_.max_total_bytes) {
+    return MakeQuotaError("SCENE_STORE_FULL", "max_total_bytes",
+                          "uploaded scenes hold " + std::to_string(used_bytes_) +
+                              " bytes; allowed: " + std::to_string(limits_.max_total_bytes) + "; delete one first",
+                          kRetryAfter);
+  }
+  used_bytes_ += bytes;
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::uint64_t> MemorySceneStore::Complete(const std::string& sha256, PartialUpload& upload) {
+  upload.closed = true;
+  const std::string actual = upload.hash.Finish();
+  const std::lock_guard lock(mutex_);
+  const std::uint64_t size = upload.bytes->size();
+  uploads_.erase(sha256);
+  if (actual != sha256) {
+    used_bytes_ -= size;
+    upload.bytes.reset();
+    return BadUpload("HASH_MISMATCH", "the bytes hash to " + actual + ", not to " + sha256 + "; they were thrown away");
+  }
+  const std::uint64_t number = next_number_++;
+  numbers_[sha256] = number;
+  scenes_[number] = {sha256, "", std::move(upload.bytes)};
+  return size;
+}
+
+absl::StatusOr<StoredScene> MemorySceneStore::Get(const std::string& sha256) {
+  const std::lock_guard lock(mutex_);
+  const auto number = numbers_.find(sha256);
+  if (number == numbers_.end()) return NoSuchScene(sha256);
+  return scenes_.at(number->second);
+}
+
+void MemorySceneStore::SetTitle(const std::string& sha256, const std::string& title) {
+  const std::lock_guard lock(mutex_);
+  if (const auto number = numbers_.find(sha256); number != numbers_.end()) scenes_.at(number->second).title = title;
+}
+
+ScenePage MemorySceneStore::List(std::optional<std::uint64_t> before, std::size_t limit) {
+  const std::lock_guard lock(mutex_);
+  ScenePage page;
+  auto scene = before ? scenes_.lower_bound(*before) : scenes_.end();
+  while (scene != scenes_.begin() && page.scenes.size() < limit) {
+    --scene;
+    page.scenes.push_back(scene->second);
+  }
+  if (scene != scenes_.begin()) page.next_before = scene->first;
+  return page;
+}
+
+absl::Status MemorySceneStore::Delete(const std::string& sha256) {
+  const std::lock_guard lock(mutex_);
+  const auto number = numbers_.find(sha256);
+  if (number == numbers_.end()) return NoSuchScene(sha256);
+  const auto scene = scenes_.find(number->second);
+  used_bytes_ -= scene->second.bytes->size();
+  scenes_.erase(scene);
+  numbers_.erase(number);
+  return absl::OkStatus();
+}
+
+}  // namespace flatlight

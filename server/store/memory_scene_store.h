@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_STORE_MEMORY_SCENE_STORE_H_
+#define FLATLIGHT_SERVER_STORE_MEMORY_SCENE_STORE_H_
+
+#include <map>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+
+#include "absl/base/thread_annotations.h"
+#include "core/execution/clock.h"
+#include "server/store/scene_store.h"
+#include "server/store/sha256.h"
+
+namespace flatlight {
+
+// Scenes that live as long as the process.
+class MemorySceneStore final : public SceneStore {
+ public:
+  struct Limits {
+    std::uint64_t max_scene_bytes = 512ull << 20;
+    std::uint64_t max_total_bytes = 2ull << 30;  // Of scenes and unfinished uploads.
+    std::size_t max_scenes = 10'000;
+    std::size_t max_uploads = 256;  // Unfinished. The one that has been idle longest gives way, if idle for a minute.
+  };
+  MemorySceneStore(const Limits& limits, const Clock& clock) : limits_(limits), clock_(clock) {}
+
+  absl::StatusOr<std::uint64_t> Upload(const std::string& sha256, std::uint64_t total_bytes, std::uint64_t offset,
+                                       std::string_view data) override;
+  absl::StatusOr<StoredScene> Get(const std::string& sha256) override;
+  void SetTitle(const std::string& sha256, const std::string& title) override;
+  ScenePage List(std::optional<std::uint64_t> before, std::size_t limit) override;
+  absl::Status Delete(const std::string& sha256) override;
+
+ private:
+  struct PartialUpload {
+    std::mutex mutex;  // Held while bytes are copied and hashed. Taken before the store's mutex, never after.
+    std::uint64_t total_bytes = 0;
+    std::shared_ptr<std::string> bytes = std::make_shared<std::string>();
+    Sha256 hash;
+    bool closed = false;  // Completed or thrown away.
+    Clock::Time last_use;
+  };
+
+  absl::StatusOr<std::shared_ptr<PartialUpload>> OpenUpload(const std::string& sha256, std::uint64_t total_bytes)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::Status Reserve(std::uint64_t bytes);
+  absl::StatusOr<std::uint64_t> Complete(const std::string& sha256, PartialUpload& upload);
+
+  const Limits limits_;
+  const Clock& clock_;
+  std::mutex mutex_;
+  std::uint64_t next_number_ ABSL_GUARDED_BY(mutex_) = 1;
+  std::uint64_t used_bytes_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::map<std::uint64_t, StoredScene> scenes_ ABSL_GUARDED_BY(mutex_);  // By number: in order of completion.
+  std::unordered_map<std::string, std::uint64_t> numbers_ ABSL_GUARDED_BY(mutex_);
+  std::unordered_map<std::string, std::shared_ptr<PartialUpload>> uploads_ ABSL_GUARDED_BY(mutex_);
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_STORE_MEMORY_SCENE_STORE_H_

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/random_bytes.h"
+
+#include <sys/random.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+
+namespace flatlight {
+
+void FillRandomBytes(unsigned char* bytes, std::size_t count) {
+  while (count > 0) {
+    const ssize_t got = getrandom(bytes, count, 0);
+    if (got < 0) {
+      if (errno == EINTR) continue;
+      std::perror("getrandom");
+      std::abort();
+    }
+    bytes += got;
+    count -= static_cast<std::size_t>(got);
+  }
+}
+
+}  // namespace flatlight
