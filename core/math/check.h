@@ -10,12 +10,12 @@
 #ifdef NDEBUG
 #define FLATLIGHT_DCHECK(condition) static_cast<void>(sizeof(condition))
 #else
-#define FLATLIGHT_DCHECK(condition)                                                            \
-  do {                                                                                         \
-    if (!(condition)) {                                                                        \
-      std::fprintf(stderr, "%s:%d: contract broken: %s\n", __FILE__, __LINE__, #condition);    \
-      std::abort();                                                                            \
-    }                                                                                          \
+#define FLATLIGHT_DCHECK(condition)                                                         \
+  do {                                                                                      \
+    if (!(condition)) {                                                                     \
+      std::fprintf(stderr, "%s:%d: contract broken: %s\n", __FILE__, __LINE__, #condition); \
+      std::abort();                                                                         \
+    }                                                                                       \
   } while (false)
 #endif
 

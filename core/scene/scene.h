@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The world that transport works on: validated, immutable, normalised.
 //
-// Coordinates are normalised: a point of the world is frame.origin + frame.scale * p with p in [-1, 1]^2 for every curve.
-// The scale is a power of two, so normalising rounds nothing but the shift. Radiance is normalised by a power of two too.
+// Coordinates are normalised: a point of the world is frame.origin + frame.scale * p with p in [-1, 1]^2 for every
+// curve. The scale is a power of two, so normalising rounds nothing but the shift. Radiance is normalised by a power of
+// two too.
 #ifndef FLATLIGHT_CORE_SCENE_SCENE_H_
 #define FLATLIGHT_CORE_SCENE_SCENE_H_
 
@@ -22,22 +23,25 @@ enum class CurveId : std::uint32_t { kNone = 0xffffffff };
 enum class ElementId : std::uint32_t { kNone = 0xffffffff };
 
 // A straight or arced piece of a curve, running from a to b; the front is on its left. Normalised coordinates.
+// Arcs turn by at most a quarter. No two elements overlap: where curves do, the one listed first is there and the
+// others are not.
 struct Element {
   enum class Kind : std::uint8_t { kSegment, kArc };
   Kind kind = Kind::kSegment;
-  bool full_circle = false;
   CurveId curve = CurveId::kNone;
   Point2 a;
   Point2 b;
   double length = 0;
   double arc_begin = 0;  // Arc length from the curve's first point to a.
-  // Segments and arcs lying on one line or circle share a carrier: a ray that leaves one cannot cross another at once.
+  // Arcs of one circle share a carrier: a ray that leaves one of them meets the circle again at one known place only.
   std::uint32_t carrier = 0;
   // Arcs only. The arc turns about center by sweep_angle (positive: counter-clockwise) from start_angle.
   Point2 center;
   double radius = 0;
   double start_angle = 0;
   double sweep_angle = 0;
+  Vector2 radial_a;  // Unit, from the centre to a. Neighbouring arcs of a circle share the bits at their common end.
+  Vector2 radial_b;
 
   // +1 if the front faces the centre (counter-clockwise), -1 if it faces away, 0 if straight.
   double Orientation() const { return kind == Kind::kSegment ? 0 : sweep_angle > 0 ? 1 : -1; }
@@ -60,9 +64,9 @@ struct Curve {
 // A point at which irradiance is wanted. Normalised coordinates.
 struct Receiver {
   Point2 position;
-  Vector2 normal;        // Unit, toward the side that receives.
-  Vector2 tangent;       // Unit, along increasing arc length; (normal.y, -normal.x) for a free point.
-  double curvature = 0;  // kappa: d(tangent)/d(arc length) = kappa * normal.
+  Vector2 normal;                        // Unit, toward the side that receives.
+  Vector2 tangent;                       // Unit, along increasing arc length; (normal.y, -normal.x) for a free point.
+  double curvature = 0;                  // kappa: d(tangent)/d(arc length) = kappa * normal.
   ElementId element = ElementId::kNone;  // The piece it lies on.
   double arc_length = 0;
 };
@@ -86,7 +90,7 @@ struct SceneTraits {
   std::size_t emitting_curves = 0;
   std::size_t probe_points = 0;
   double max_reflectance = 0;
-  bool grey = true;            // All channels equal everywhere.
+  bool grey = true;  // All channels equal everywhere.
   bool has_arcs = false;
 };
 
@@ -108,7 +112,9 @@ class Scene {
   const std::string& world_hash() const { return world_hash_; }
   const std::string& probe_hash() const { return probe_hash_; }
 
-  Point2 ToWorld(Point2 p) const { return {frame_.origin.x + frame_.scale * p.x, frame_.origin.y + frame_.scale * p.y}; }
+  Point2 ToWorld(Point2 p) const {
+    return {frame_.origin.x + frame_.scale * p.x, frame_.origin.y + frame_.scale * p.y};
+  }
 
  private:
   friend class SceneBuilder;

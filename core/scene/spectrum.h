@@ -22,12 +22,8 @@ struct Spectrum {
   friend bool operator==(const Spectrum&, const Spectrum&) = default;
 };
 
-constexpr Spectrum operator+(const Spectrum& a, const Spectrum& b) {
-  return {{a[0] + b[0], a[1] + b[1], a[2] + b[2]}};
-}
-constexpr Spectrum operator*(const Spectrum& a, const Spectrum& b) {
-  return {{a[0] * b[0], a[1] * b[1], a[2] * b[2]}};
-}
+constexpr Spectrum operator+(const Spectrum& a, const Spectrum& b) { return {{a[0] + b[0], a[1] + b[1], a[2] + b[2]}}; }
+constexpr Spectrum operator*(const Spectrum& a, const Spectrum& b) { return {{a[0] * b[0], a[1] * b[1], a[2] * b[2]}}; }
 constexpr Spectrum operator*(double k, const Spectrum& a) { return {{k * a[0], k * a[1], k * a[2]}}; }
 
 }  // namespace flatlight

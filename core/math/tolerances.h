@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every tolerance of the transport core. Lengths are in normalised units: all curves lie in [-1, 1]^2.
+#ifndef FLATLIGHT_CORE_MATH_TOLERANCES_H_
+#define FLATLIGHT_CORE_MATH_TOLERANCES_H_
+
+namespace flatlight {
+
+// Half a unit in the last place of 1: the rounding of one operation on numbers near 1.
+inline constexpr double kUnitRoundoff = 0x1p-53;
+
+// How far apart two curves may be and still touch, for rays. Rounding places a curve's end up to 2 roundoffs from where
+// its neighbour passes. Smaller: light leaks through T-junctions. Larger: gaps of this width close (a keyhole of 1e-7
+// narrows by 2e-8 of itself).
+inline constexpr double kTouchDistance = 8 * kUnitRoundoff;
+
+// Curves overlap if one runs within this distance of another for longer than this. Larger than kTouchDistance because
+// the direction of a short piece is uncertain.
+inline constexpr double kOverlapDistance = 32 * kUnitRoundoff;
+
+// A free probe point closer than this to a curve lies on it (scaled up with Scene::coordinate_error()).
+inline constexpr double kAttachDistance = 16 * kUnitRoundoff;
+
+// A free probe point on a curve whose normal is not the curve's is moved off the curve by this, to the side its normal
+// points to. The error of irradiance is of this order, relative to the nearest vertex's distance.
+inline constexpr double kLiftDistance = 0x1p-42;
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_MATH_TOLERANCES_H_

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_SCENE_ATTACH_H_
+#define FLATLIGHT_CORE_SCENE_ATTACH_H_
+
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+// Finds the element each receiver lies on, by position alone, and sets Receiver::element. One whose normal is not that
+// of the curve it lies on (a free point may be turned) gets none; it is lifted off the curve toward its normal instead.
+void AttachReceivers(const std::vector<Element>& elements, double coordinate_error, std::vector<Receiver*> receivers);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_SCENE_ATTACH_H_

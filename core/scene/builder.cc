@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene/builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <unordered_map>
+
+#include "core/math/tolerances.h"
+#include "core/math/trig.h"
+#include "core/scene/attach.h"
+#include "core/scene/element_frame.h"
+#include "core/scene/hash.h"
+#include "core/scene/overlap.h"
+#include "core/scene/validate.h"
+
+namespace flatlight {
+namespace {
+
+constexpr double kQuarter = 0x1.921fb54442d18p+0;
+
+Spectrum ToSpectrum(const SpectrumValues& values) {
+  return values.size() == 1 ? Spectrum::Grey(values[0]) : Spectrum{{values[0], values[1], values[2]}};
+}
+
+struct Box {
+  double low_x = std::numeric_limits<double>::infinity(), low_y = low_x, high_x = -low_x, high_y = -low_x;
+  void Add(Point2 p) {
+    low_x = std::min(low_x, p.x), low_y = std::min(low_y, p.y);
+    high_x = std::max(high_x, p.x), high_y = std::max(high_y, p.y);
+  }
+};
+
+// Pieces of at most a quarter; the count depends on the angle alone.
+int ArcPieces(double sweep_angle) {
+  return std::max(1, static_cast<int>(std::ceil(std::abs(sweep_angle) / kQuarter - 1e-9)));
+}
+
+Vector2 Radial(const ArcDescription& arc, double fraction) {
+  const SinCosValue direction = SinCos(arc.start_angle + fraction * arc.sweep_angle);
+  return {direction.cos, direction.sin};
+}
+
+void AddShape(const CurveDescription& curve, Box& box) {
+  if (const auto* segment = std::get_if<SegmentDescription>(&curve.shape)) {
+    box.Add(segment->a), box.Add(segment->b);
+  } else if (const auto* polyline = std::get_if<PolylineDescription>(&curve.shape)) {
+    for (const Point2& point : polyline->points) box.Add(point);
+  } else {
+    const auto& arc = std::get<ArcDescription>(curve.shape);
+    const int corners = 2 * ArcPieces(arc.sweep_angle);
+    // Every other corner of a polygon around the arc: it is enclosed, with little to spare.
+    const double outer = arc.radius / SinCos(arc.sweep_angle / corners).cos;
+    for (int i = 0; i <= corners; ++i) {
+      box.Add(arc.center + (i % 2 == 0 ? arc.radius : outer) * Radial(arc, static_cast<double>(i) / corners));
+    }
+  }
+}
+
+// The smallest power of two that is >= value > 0.
+double PowerOfTwoAbove(double value) {
+  int exponent = 0;
+  const double mantissa = std::frexp(value, &exponent);
+  return std::ldexp(1, mantissa == 0.5 ? exponent - 1 : exponent);
+}
+
+}  // namespace
+
+SceneBuilder::SceneBuilder(const SceneDescription& description, Diagnostics& diagnostics)
+    : description_(description), diagnostics_(diagnostics), scene_(std::make_shared<Scene>()) {}
+
+std::shared_ptr<const Scene> SceneBuilder::Build() {
+  ValidateScene(description_, SceneLimits{}, diagnostics_);
+  if (!diagnostics_.empty()) return nullptr;
+  scene_->name_ = description_.name;
+  Normalise();
+  AddCurves();
+  if (!diagnostics_.empty()) return nullptr;
+  scene_->elements_ = RemoveOverlaps(pieces_);
+  std::size_t next = 0;
+  for (std::size_t c = 0; c < scene_->curves_.size(); ++c) {
+    Curve& curve = scene_->curves_[c];
+    curve.first_element = static_cast<std::uint32_t>(next);
+    while (next < scene_->elements_.size() && static_cast<std::size_t>(scene_->elements_[next].curve) == c) ++next;
+    curve.element_count = static_cast<std::uint32_t>(next) - curve.first_element;
+  }
+  AddProbes();
+  Summarise();
+  return scene_;
+}
+
+void SceneBuilder::Normalise() {
+  Box box;
+  for (const CurveDescription& curve : description_.curves) AddShape(curve, box);
+  if (description_.curves.empty()) {
+    for (const ProbeDescription& probe : description_.probes)
+      for (const ProbePointDescription& point : probe.points) box.Add(point.position);
+  }
+  Frame& frame = scene_->frame_;
+  frame.origin = {0.5 * box.low_x + 0.5 * box.high_x, 0.5 * box.low_y + 0.5 * box.high_y};
+  const double half = std::max({box.high_x - frame.origin.x, frame.origin.x - box.low_x, box.high_y - frame.origin.y,
+                                frame.origin.y - box.low_y});
+  frame.scale = half > 0 ? PowerOfTwoAbove(half) : 1;
+  double radiance = 0;
+  for (const CurveDescription& curve : description_.curves) {
+    if (curve.emission) radiance = std::max(radiance, ToSpectrum(curve.emission->radiance).Max());
+  }
+  frame.radiance_scale = radiance > 0 ? PowerOfTwoAbove(radiance) : 1;
+}
+
+Point2 SceneBuilder::ToFrame(Point2 world) {
+  const Frame& frame = scene_->frame_;
+  const Point2 p{(world.x - frame.origin.x) / frame.scale, (world.y - frame.origin.y) / frame.scale};
+  // What the subtraction rounded away (Knuth's TwoSum), to know how well coordinates are known.
+  const auto residual = [&](double value, double origin) {
+    const double difference = value - origin;
+    const double shifted = difference - value;
+    return std::abs(((value - (difference - shifted)) + (-origin - shifted)) / frame.scale);
+  };
+  scene_->coordinate_error_ =
+      std::max({scene_->coordinate_error_, residual(world.x, frame.origin.x), residual(world.y, frame.origin.y)});
+  return p;
+}
+
+void SceneBuilder::AddCurves() {
+  std::unordered_map<std::string, const MaterialDescription*> materials;
+  for (const MaterialDescription& material : description_.materials) materials.emplace(material.name, &material);
+  for (std::size_t c = 0; c < description_.curves.size(); ++c) {
+    const CurveDescription& from = description_.curves[c];
+    Curve curve;
+    curve.name = from.name;
+    curve.reflectance = ToSpectrum(std::get<LambertianDescription>(materials.at(from.material)->kind).reflectance);
+    if (from.emission) {
+      const Spectrum radiance = ToSpectrum(from.emission->radiance);
+      for (int i = 0; i < kMaxChannels; ++i) curve.radiance[i] = radiance[i] / scene_->frame_.radiance_scale;
+      curve.two_sided = from.emission->two_sided;
+    }
+    first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
+    if (const auto* segment = std::get_if<SegmentDescription>(&from.shape)) {
+      AddPiece(c, ToFrame(segment->a), ToFrame(segment->b));
+    } else if (const auto* polyline = std::get_if<PolylineDescription>(&from.shape)) {
+      const std::size_t count = polyline->points.size();
+      for (std::size_t i = 0; i + 1 < count + (polyline->closed ? 1 : 0); ++i) {
+        AddPiece(c, ToFrame(polyline->points[i]), ToFrame(polyline->points[(i + 1) % count]));
+      }
+    } else {
+      AddArc(c, std::get<ArcDescription>(from.shape));
+    }
+    for (std::size_t i = first_piece_.back(); i < pieces_.size(); ++i) {
+      pieces_[i].arc_begin = curve.length;
+      curve.length += pieces_[i].length;
+    }
+    scene_->curves_.push_back(std::move(curve));
+  }
+  first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
+}
+
+void SceneBuilder::AddPiece(std::size_t curve, Point2 a, Point2 b) {
+  Element piece;
+  piece.curve = static_cast<CurveId>(curve);
+  piece.carrier = static_cast<std::uint32_t>(pieces_.size());
+  piece.a = a;
+  piece.b = b;
+  piece.length = std::hypot(b.x - a.x, b.y - a.y);
+  if (LengthSquared(b - a) < 1e-280) {
+    diagnostics_.Add("plane.curves[" + std::to_string(curve) + "]",
+                     "has a piece too short to be told from a point beside the size and place of the whole scene");
+  }
+  pieces_.push_back(piece);
+}
+
+void SceneBuilder::AddArc(std::size_t curve, const ArcDescription& arc) {
+  const int count = ArcPieces(arc.sweep_angle);
+  Element piece;
+  piece.kind = Element::Kind::kArc;
+  piece.curve = static_cast<CurveId>(curve);
+  piece.carrier = static_cast<std::uint32_t>(pieces_.size());
+  piece.center = ToFrame(arc.center);
+  piece.radius = arc.radius / scene_->frame_.scale;
+  piece.sweep_angle = arc.sweep_angle / count;
+  piece.length = std::abs(piece.sweep_angle) * piece.radius;
+  const bool closed = std::abs(arc.sweep_angle) >= 4 * kQuarter;
+  const Vector2 first = Radial(arc, 0);
+  const auto on_circle = [&](Vector2 radial) { return piece.center + piece.radius * radial; };
+  if (LengthSquared(on_circle(first) - on_circle(Radial(arc, 1.0 / count))) < 1e-280) {
+    diagnostics_.Add("plane.curves[" + std::to_string(curve) + "].arc",
+                     "is too short to be told from a point beside the size and place of the whole scene");
+  }
+  piece.radial_b = first;
+  piece.b = on_circle(first);
+  for (int i = 0; i < count; ++i) {
+    piece.start_angle = arc.start_angle + i * piece.sweep_angle;
+    piece.a = piece.b;
+    piece.radial_a = piece.radial_b;
+    piece.radial_b = closed && i + 1 == count ? first : Radial(arc, (i + 1.0) / count);
+    piece.b = on_circle(piece.radial_b);
+    pieces_.push_back(piece);
+  }
+}
+
+void SceneBuilder::AddProbes() {
+  for (const ProbeDescription& description : description_.probes) {
+    Probe probe;
+    probe.name = description.name;
+    if (description.curve) {
+      AddCurveProbe(description, probe);
+    } else {
+      AddPointProbe(description, probe);
+    }
+    scene_->probes_.push_back(std::move(probe));
+  }
+  // Free points may lie on curves, and curve points on pieces that another curve covers.
+  std::vector<Receiver*> loose;
+  for (Probe& probe : scene_->probes_)
+    for (Receiver& receiver : probe.receivers)
+      if (receiver.element == ElementId::kNone) loose.push_back(&receiver);
+  AttachReceivers(scene_->elements_, scene_->coordinate_error_, std::move(loose));
+}
+
+ElementId SceneBuilder::ElementAt(const Curve& curve, double arc_length) const {
+  const auto first = scene_->elements_.begin() + curve.first_element;
+  const auto last = first + curve.element_count;
+  const auto next =
+      std::upper_bound(first, last, arc_length, [](double s, const Element& e) { return s < e.arc_begin; });
+  if (next == first) return ElementId::kNone;
+  const auto element = std::prev(next);
+  if (arc_length > element->arc_begin + element->length * (1 + 4 * kUnitRoundoff)) return ElementId::kNone;
+  return static_cast<ElementId>(element - scene_->elements_.begin());
+}
+
+void SceneBuilder::AddCurveProbe(const ProbeDescription& description, Probe& probe) const {
+  std::size_t c = 0;
+  while (scene_->curves_[c].name != *description.curve) ++c;
+  probe.curve = static_cast<CurveId>(c);
+  const Curve& curve = scene_->curves_[c];
+  const auto first = pieces_.begin() + first_piece_[c];
+  const auto last = pieces_.begin() + first_piece_[c + 1];
+  const double from = description.from.value_or(0);
+  const double to = description.to.value_or(1);
+  const double side = description.side.value_or(Side::kFront) == Side::kBack ? -1 : 1;
+  for (std::uint32_t i = 0; i < *description.count; ++i) {
+    const double fraction = from + (i + 0.5) / *description.count * (to - from);
+    Receiver receiver;
+    receiver.arc_length = fraction * curve.length;
+    // The last piece that starts at or before the point: a point on a vertex belongs to the piece that starts there.
+    const auto piece = std::prev(std::upper_bound(first + 1, last, receiver.arc_length,
+                                                  [](double s, const Element& e) { return s < e.arc_begin; }));
+    const double local = std::clamp((receiver.arc_length - piece->arc_begin) / piece->length, 0.0, 1.0);
+    const ElementFrame frame = FrameAt(*piece, last - first == 1 ? fraction : local);
+    receiver.position = frame.position;
+    receiver.tangent = frame.tangent;
+    receiver.normal = side * frame.normal;
+    receiver.curvature = side * frame.curvature;
+    receiver.element = ElementAt(curve, receiver.arc_length);
+    probe.receivers.push_back(receiver);
+  }
+}
+
+void SceneBuilder::AddPointProbe(const ProbeDescription& description, Probe& probe) {
+  for (const ProbePointDescription& point : description.points) {
+    Receiver receiver;
+    receiver.position = ToFrame(point.position);
+    const double largest = std::max(std::abs(point.normal.x), std::abs(point.normal.y));
+    receiver.normal = Normalized({point.normal.x / largest, point.normal.y / largest});
+    receiver.tangent = Right(receiver.normal);
+    probe.receivers.push_back(receiver);
+  }
+}
+
+void SceneBuilder::Summarise() {
+  Scene& scene = *scene_;
+  // Rounding of receivers and arcs comes on top of the shift's.
+  scene.coordinate_error_ += 2 * kUnitRoundoff;
+  bool colours = false;
+  for (const MaterialDescription& material : description_.materials)
+    colours |= std::get<LambertianDescription>(material.kind).reflectance.size() == 3;
+  for (const CurveDescription& curve : description_.curves)
+    colours |= curve.emission && curve.emission->radiance.size() == 3;
+  scene.channels_ = colours ? 3 : 1;
+
+  SceneTraits& traits = scene.traits_;
+  traits.curves = scene.curves_.size();
+  traits.elements = scene.elements_.size();
+  for (const Curve& curve : scene.curves_) {
+    traits.emitting_curves += curve.Emits() ? 1 : 0;
+    traits.max_reflectance = std::max(traits.max_reflectance, curve.reflectance.Max());
+    traits.grey = traits.grey && curve.reflectance.IsGrey() && curve.radiance.IsGrey();
+  }
+  for (const Element& element : scene.elements_) traits.has_arcs |= element.kind == Element::Kind::kArc;
+  for (const Probe& probe : scene.probes_) traits.probe_points += probe.receivers.size();
+  scene.world_hash_ = HashWorld(description_);
+  scene.probe_hash_ = HashProbes(description_);
+}
+
+std::shared_ptr<const Scene> BuildScene(const SceneDescription& description, Diagnostics& diagnostics) {
+  return SceneBuilder(description, diagnostics).Build();
+}
+
+}  // namespace flatlight

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_SCENE_ELEMENT_FRAME_H_
+#define FLATLIGHT_CORE_SCENE_ELEMENT_FRAME_H_
+
+#include "core/math/vec.h"
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+// A place on an element and the directions there. Normalised coordinates.
+struct ElementFrame {
+  Point2 position;
+  Vector2 tangent;       // Unit, from a to b.
+  Vector2 normal;        // Unit, the front.
+  double curvature = 0;  // d(tangent)/d(arc length) = curvature * normal.
+};
+
+// The place at a fraction in [0, 1] of the element's length.
+ElementFrame FrameAt(const Element& element, double fraction);
+
+// Unit normal of the front at a point of the element.
+Vector2 FrontNormal(const Element& element, Point2 on_element);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_SCENE_ELEMENT_FRAME_H_

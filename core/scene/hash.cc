@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene/hash.h"
+
+#include <openssl/evp.h>
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+
+namespace flatlight {
+namespace {
+
+class Hasher {
+ public:
+  Hasher() : context_(EVP_MD_CTX_new()) { EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr); }
+
+  void Add(std::uint64_t value) {
+    std::array<unsigned char, 8> bytes;  // Little-endian on every machine.
+    for (std::size_t i = 0; i < 8; ++i) bytes[i] = static_cast<unsigned char>(value >> (8 * i));
+    EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size());
+  }
+  void Add(double value) { Add(std::bit_cast<std::uint64_t>(value + 0.0)); }  // -0 counts as 0.
+  void Add(Point2 p) { Add(p.x), Add(p.y); }
+  void Add(Vector2 v) { Add(v.x), Add(v.y); }
+  void Add(const SpectrumValues& values) {
+    Add(std::uint64_t{values.size()});
+    for (const double value : values) Add(value);
+  }
+  std::string Hex() {
+    std::array<unsigned char, 32> digest;
+    EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr);
+    std::string text;
+    for (const unsigned char byte : digest) {
+      constexpr char kDigits[] = "0123456789abcdef";
+      text += kDigits[byte >> 4];
+      text += kDigits[byte & 15];
+    }
+    return text;
+  }
+
+ private:
+  struct Free {
+    void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
+  };
+  std::unique_ptr<EVP_MD_CTX, Free> context_;
+};
+
+void AddShape(const CurveDescription& curve, Hasher& hasher) {
+  hasher.Add(std::uint64_t{curve.shape.index()});
+  if (const auto* segment = std::get_if<SegmentDescription>(&curve.shape)) {
+    hasher.Add(segment->a), hasher.Add(segment->b);
+  } else if (const auto* polyline = std::get_if<PolylineDescription>(&curve.shape)) {
+    hasher.Add(std::uint64_t{polyline->points.size()});
+    for (const Point2& point : polyline->points) hasher.Add(point);
+    hasher.Add(std::uint64_t{polyline->closed});
+  } else if (const auto* arc = std::get_if<ArcDescription>(&curve.shape)) {
+    hasher.Add(arc->center), hasher.Add(arc->radius), hasher.Add(arc->start_angle), hasher.Add(arc->sweep_angle);
+  }
+}
+
+}  // namespace
+
+std::string HashWorld(const SceneDescription& description) {
+  std::unordered_map<std::string, const MaterialDescription*> materials;
+  for (const MaterialDescription& material : description.materials) materials.emplace(material.name, &material);
+  Hasher hasher;
+  for (const CurveDescription& curve : description.curves) {
+    AddShape(curve, hasher);
+    const auto& kind = materials.at(curve.material)->kind;
+    hasher.Add(std::uint64_t{kind.index()});
+    hasher.Add(std::get<LambertianDescription>(kind).reflectance);
+    hasher.Add(std::uint64_t{curve.emission.has_value()});
+    if (curve.emission) {
+      hasher.Add(curve.emission->radiance);
+      hasher.Add(std::uint64_t{curve.emission->two_sided});
+    }
+  }
+  return hasher.Hex();
+}
+
+std::string HashProbes(const SceneDescription& description) {
+  std::unordered_map<std::string, std::uint64_t> curves;
+  for (const CurveDescription& curve : description.curves) curves.emplace(curve.name, curves.size());
+  Hasher hasher;
+  for (const ProbeDescription& probe : description.probes) {
+    hasher.Add(std::uint64_t{probe.curve.has_value()});
+    if (probe.curve) {
+      hasher.Add(curves.at(*probe.curve));
+      hasher.Add(std::uint64_t{*probe.count});
+      hasher.Add(probe.from.value_or(0));
+      hasher.Add(probe.to.value_or(1));
+      hasher.Add(std::uint64_t{probe.side.value_or(Side::kFront) == Side::kBack});
+    }
+    hasher.Add(std::uint64_t{probe.points.size()});
+    for (const ProbePointDescription& point : probe.points) hasher.Add(point.position), hasher.Add(point.normal);
+  }
+  return hasher.Hex();
+}
+
+}  // namespace flatlight

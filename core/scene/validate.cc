@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene/validate.h"
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <unordered_map>
+
+namespace flatlight {
+namespace {
+
+std::string Number(double value) {
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof(buffer), value);
+  return std::string(buffer, end.ptr);
+}
+
+std::string Quoted(const std::string& text) {
+  constexpr std::size_t kShown = 60;
+  return '"' + (text.size() <= kShown ? text : text.substr(0, kShown) + "...") + '"';
+}
+
+std::string Item(const std::string& list, std::size_t index) { return list + "[" + std::to_string(index) + "]"; }
+
+// The unique names of one list.
+class Names {
+ public:
+  Names(std::string list, Diagnostics& diagnostics) : list_(std::move(list)), diagnostics_(diagnostics) {}
+
+  void Add(const std::string& name, std::size_t index) {
+    const std::string path = Item(list_, index) + ".name";
+    if (name.empty()) {
+      diagnostics_.Add(path, "is missing or empty; every item needs a name");
+    } else if (const auto [known, added] = index_.emplace(name, index); !added) {
+      diagnostics_.Add(path, Quoted(name) + " is the name of " + Item(list_, known->second) + " too; names are unique");
+    }
+  }
+  bool Has(const std::string& name) const { return index_.count(name) != 0; }
+  // The names there are, a few of them.
+  std::string Offer() const {
+    constexpr std::size_t kShown = 8;
+    if (index_.empty()) return "there is none";
+    std::string text = "known:";
+    std::size_t shown = 0;
+    for (const auto& [name, index] : index_) {
+      if (shown++ == kShown) return text + " ...";
+      text += " " + Quoted(name);
+    }
+    return text;
+  }
+
+ private:
+  std::string list_;
+  Diagnostics& diagnostics_;
+  std::unordered_map<std::string, std::size_t> index_;
+};
+
+class Validator {
+ public:
+  Validator(const SceneDescription& scene, const SceneLimits& limits, Diagnostics& diagnostics)
+      : scene_(scene),
+        limits_(limits),
+        diagnostics_(diagnostics),
+        materials_("plane.materials", diagnostics),
+        curves_("plane.curves", diagnostics),
+        probes_("probes", diagnostics) {}
+
+  void Run() {
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i) CheckMaterial(i);
+    if (scene_.curves.size() > limits_.max_curves) {
+      diagnostics_.Add("plane.curves", "has " + std::to_string(scene_.curves.size()) + " curves; at most " +
+                                           std::to_string(limits_.max_curves) + " are allowed");
+      return;
+    }
+    for (std::size_t i = 0; i < scene_.curves.size(); ++i) CheckCurve(i);
+    if (elements_ > limits_.max_elements) {
+      diagnostics_.Add("plane.curves", "have " + std::to_string(elements_) + " pieces; at most " +
+                                           std::to_string(limits_.max_elements) + " are allowed");
+    }
+    if (scene_.probes.empty()) diagnostics_.Add("probes", "is missing or empty; at least one probe is needed");
+    for (std::size_t i = 0; i < scene_.probes.size(); ++i) CheckProbe(i);
+    if (probe_points_ > limits_.max_probe_points) {
+      diagnostics_.Add("probes", "have " + std::to_string(probe_points_) + " points; at most " +
+                                     std::to_string(limits_.max_probe_points) + " are allowed");
+    }
+  }
+
+ private:
+  void CheckSpectrum(const SpectrumValues& values, const std::string& path, double high, const std::string& allowed) {
+    if (values.size() != 1 && values.size() != 3) {
+      diagnostics_.Add(
+          path, "has " + std::to_string(values.size()) + " values; 1 (grey) or 3 (red, green, blue) are allowed");
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!(values[i] >= 0 && values[i] <= high)) {
+        diagnostics_.Add(Item(path, i), "is " + Number(values[i]) + "; allowed: " + allowed);
+      }
+    }
+  }
+
+  bool CheckRange(double value, double low, double high, const std::string& path) {
+    if (value >= low && value <= high) return true;
+    diagnostics_.Add(path, "is " + Number(value) + "; allowed: " + Number(low) + " to " + Number(high));
+    return false;
+  }
+
+  bool CheckPoint(Point2 point, const std::string& path) {
+    const bool x = CheckRange(point.x, -limits_.max_coordinate, limits_.max_coordinate, path + ".x");
+    const bool y = CheckRange(point.y, -limits_.max_coordinate, limits_.max_coordinate, path + ".y");
+    return x && y;
+  }
+
+  void CheckMaterial(std::size_t index) {
+    const MaterialDescription& material = scene_.materials[index];
+    const std::string path = Item("plane.materials", index);
+    materials_.Add(material.name, index);
+    if (const auto* lambertian = std::get_if<LambertianDescription>(&material.kind)) {
+      CheckSpectrum(lambertian->reflectance, path + ".lambertian.reflectance", 1, "0 to 1");
+    } else {
+      diagnostics_.Add(path, "has no kind; allowed: lambertian");
+    }
+  }
+
+  void CheckCurve(std::size_t index) {
+    const CurveDescription& curve = scene_.curves[index];
+    const std::string path = Item("plane.curves", index);
+    curves_.Add(curve.name, index);
+    if (const auto* segment = std::get_if<SegmentDescription>(&curve.shape)) {
+      CheckSegment(*segment, path + ".segment");
+    } else if (const auto* polyline = std::get_if<PolylineDescription>(&curve.shape)) {
+      CheckPolyline(*polyline, path + ".polyline");
+    } else if (const auto* arc = std::get_if<ArcDescription>(&curve.shape)) {
+      CheckArc(*arc, path + ".arc");
+    } else {
+      diagnostics_.Add(path, "has no shape; allowed: segment, polyline, arc");
+    }
+    if (curve.material.empty()) {
+      diagnostics_.Add(path + ".material", "is missing or empty; the name of a material is needed");
+    } else if (!materials_.Has(curve.material)) {
+      diagnostics_.Add(path + ".material", Quoted(curve.material) + " is not a material; " + materials_.Offer());
+    }
+    if (curve.emission) {
+      CheckSpectrum(curve.emission->radiance, path + ".emission.radiance", limits_.max_radiance,
+                    "0 to " + Number(limits_.max_radiance));
+    }
+  }
+
+  void CheckSegment(const SegmentDescription& segment, const std::string& path) {
+    elements_ += 1;
+    const bool a = CheckPoint(segment.a, path + ".a");
+    const bool b = CheckPoint(segment.b, path + ".b");
+    if (a && b && segment.a == segment.b) {
+      diagnostics_.Add(path, "has zero length: a and b are both (" + Number(segment.a.x) + ", " + Number(segment.a.y) +
+                                 "); they must differ");
+    }
+  }
+
+  void CheckPolyline(const PolylineDescription& polyline, const std::string& path) {
+    const std::size_t count = polyline.points.size();
+    elements_ += count;
+    if (count < 2) {
+      diagnostics_.Add(path + ".points", "has " + std::to_string(count) + " points; at least 2 are needed");
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::string point = Item(path + ".points", i);
+      if (!CheckPoint(polyline.points[i], point)) continue;
+      if (i > 0 && polyline.points[i] == polyline.points[i - 1]) {
+        diagnostics_.Add(point, "equals the point before it, (" + Number(polyline.points[i].x) + ", " +
+                                    Number(polyline.points[i].y) + "); neighbours must differ");
+      }
+    }
+    if (polyline.closed && count >= 2 && polyline.points.front() == polyline.points.back()) {
+      diagnostics_.Add(Item(path + ".points", count - 1),
+                       "equals the first point; a closed polyline returns to it by itself");
+    }
+  }
+
+  void CheckArc(const ArcDescription& arc, const std::string& path) {
+    elements_ += 5;
+    CheckPoint(arc.center, path + ".center");
+    if (!(arc.radius > 0 && arc.radius <= limits_.max_coordinate)) {
+      diagnostics_.Add(path + ".radius",
+                       "is " + Number(arc.radius) + "; allowed: above 0 to " + Number(limits_.max_coordinate));
+    }
+    CheckRange(arc.start_angle, -1e6, 1e6, path + ".startAngle");
+    if (CheckRange(arc.sweep_angle, -2 * std::numbers::pi, 2 * std::numbers::pi, path + ".sweepAngle") &&
+        arc.sweep_angle == 0) {
+      diagnostics_.Add(path + ".sweepAngle", "is 0: the arc has zero length; allowed: -2 pi to 2 pi without 0");
+    }
+  }
+
+  void CheckProbe(std::size_t index) {
+    const ProbeDescription& probe = scene_.probes[index];
+    const std::string path = Item("probes", index);
+    probes_.Add(probe.name, index);
+    if (probe.curve.has_value() == !probe.points.empty()) {
+      diagnostics_.Add(path, probe.curve ? "has both a curve and points; exactly one of them is allowed"
+                                         : "has neither a curve nor points; exactly one of them is needed");
+    }
+    if (probe.curve) {
+      CheckCurveProbe(probe, path);
+    } else {
+      const auto refuse = [&](bool given, const char* field) {
+        if (given) diagnostics_.Add(path + "." + field, "is given, but goes with a curve only");
+      };
+      refuse(probe.count.has_value(), "count");
+      refuse(probe.from.has_value(), "from");
+      refuse(probe.to.has_value(), "to");
+      refuse(probe.side.has_value(), "side");
+    }
+    probe_points_ += probe.points.size();
+    for (std::size_t i = 0; i < probe.points.size(); ++i) {
+      const std::string point = Item(path + ".points", i);
+      CheckPoint(probe.points[i].position, point + ".position");
+      const Vector2 normal = probe.points[i].normal;
+      const bool x = CheckRange(normal.x, -limits_.max_coordinate, limits_.max_coordinate, point + ".normal.x");
+      const bool y = CheckRange(normal.y, -limits_.max_coordinate, limits_.max_coordinate, point + ".normal.y");
+      if (x && y && normal == Vector2{}) diagnostics_.Add(point + ".normal", "is (0, 0); a direction is needed");
+    }
+  }
+
+  void CheckCurveProbe(const ProbeDescription& probe, const std::string& path) {
+    if (!curves_.Has(*probe.curve)) {
+      diagnostics_.Add(path + ".curve", Quoted(*probe.curve) + " is not a curve; " + curves_.Offer());
+    }
+    if (!probe.count) {
+      diagnostics_.Add(path + ".count", "is missing; the number of points, 1 to " +
+                                            std::to_string(limits_.max_probe_points) + ", is needed");
+    } else if (*probe.count < 1 || *probe.count > limits_.max_probe_points) {
+      diagnostics_.Add(path + ".count", "is " + std::to_string(*probe.count) + "; allowed: 1 to " +
+                                            std::to_string(limits_.max_probe_points));
+    } else {
+      probe_points_ += *probe.count;
+    }
+    const double from = probe.from.value_or(0);
+    const double to = probe.to.value_or(1);
+    const bool both = CheckRange(from, 0, 1, path + ".from") & CheckRange(to, 0, 1, path + ".to");
+    if (both && from == to) diagnostics_.Add(path + ".to", "equals from, " + Number(from) + "; they must differ");
+  }
+
+  const SceneDescription& scene_;
+  const SceneLimits& limits_;
+  Diagnostics& diagnostics_;
+  Names materials_;
+  Names curves_;
+  Names probes_;
+  std::size_t elements_ = 0;
+  std::size_t probe_points_ = 0;
+};
+
+}  // namespace
+
+void ValidateScene(const SceneDescription& description, const SceneLimits& limits, Diagnostics& diagnostics) {
+  Validator(description, limits, diagnostics).Run();
+}
+
+}  // namespace flatlight

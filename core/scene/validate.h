@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_SCENE_VALIDATE_H_
+#define FLATLIGHT_CORE_SCENE_VALIDATE_H_
+
+#include "core/scene/description.h"
+#include "core/scene/diagnostic.h"
+
+namespace flatlight {
+
+// What a scene may hold.
+struct SceneLimits {
+  std::size_t max_curves = 4'000'000;
+  std::size_t max_elements = 16'000'000;  // Straight pieces; arcs count as up to 5.
+  std::size_t max_probe_points = 1'000'000;
+  double max_coordinate = 1e100;  // m, of any coordinate and radius.
+  double max_radiance = 1e100;    // W/(rad m).
+};
+
+// Reports every mistake of a description: ranges, names, shapes.
+void ValidateScene(const SceneDescription& description, const SceneLimits& limits, Diagnostics& diagnostics);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_SCENE_VALIDATE_H_
