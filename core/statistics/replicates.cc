@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/statistics/replicates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flatlight {
+namespace {
+
+// Values are sums over a path and a tree of blocks, each step correct to 2^-53: of the order of 32 steps count.
+constexpr double kRounding = 32 * 0x1p-53;
+
+}  // namespace
+
+double MeanEstimate::StandardError() const {
+  const double spread = std::sqrt(variance * degrees_of_freedom / (degrees_of_freedom - 2));
+  return std::max(spread, kRounding * std::abs(mean));
+}
+
+MeanEstimate EstimateMean(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  double sum = 0;
+  for (const double x : values) sum += x;
+  MeanEstimate estimate;
+  estimate.mean = sum / n;
+  double squares = 0;
+  for (const double x : values) squares += (x - estimate.mean) * (x - estimate.mean);
+  estimate.variance = squares / ((n - 1) * n);
+  estimate.degrees_of_freedom = n - 1;
+  return estimate;
+}
+
+MeanEstimate Average(const MeanEstimate& a, const MeanEstimate& b) {
+  MeanEstimate average;
+  average.mean = (a.mean + b.mean) / 2;
+  average.variance = (a.variance + b.variance) / 4;
+  const double sum = a.variance + b.variance;
+  const double weights =
+      a.variance * (a.variance / a.degrees_of_freedom) + b.variance * (b.variance / b.degrees_of_freedom);
+  average.degrees_of_freedom = weights > 0 ? sum * (sum / weights) : a.degrees_of_freedom + b.degrees_of_freedom;
+  return average;
+}
+
+double RelativeError(double mean, double standard_error, double floor) {
+  if (standard_error == 0) return 0;
+  const double size = std::max(mean, floor);
+  return size > 0 ? standard_error / size : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace flatlight

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Estimates from independently randomised replicates. Samples within a replicate are correlated (they are stratified);
+// the means of replicates are not, and they alone tell the error.
+#ifndef FLATLIGHT_CORE_STATISTICS_REPLICATES_H_
+#define FLATLIGHT_CORE_STATISTICS_REPLICATES_H_
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace flatlight {
+
+inline constexpr std::size_t kReplicates = 16;
+inline constexpr std::size_t kHalfReplicates = kReplicates / 2;
+
+// A mean and the variance of that mean, as estimated from `degrees_of_freedom` + 1 values.
+struct MeanEstimate {
+  double mean = 0;
+  double variance = 0;
+  double degrees_of_freedom = 1;
+
+  // (mean - truth) / standard error has variance 1: the t distribution of nu degrees of freedom, which the plain ratio
+  // follows if the values are normal, has variance nu / (nu - 2). Never below the rounding of the sums behind the mean.
+  double StandardError() const;
+};
+
+MeanEstimate EstimateMean(std::span<const double> values);
+
+// The plain average of two independent estimates. Its degrees of freedom are those of Welch (1947).
+MeanEstimate Average(const MeanEstimate& a, const MeanEstimate& b);
+
+// standard_error / max(mean, floor); 0 if both are 0, infinite if only the latter is.
+double RelativeError(double mean, double standard_error, double floor);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_STATISTICS_REPLICATES_H_
