@@ -5,15 +5,15 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "core/math/vec.h"
+#include "core/plane/bvh.h"
 #include "core/scene/scene.h"
 
 namespace flatlight {
 
-// A point rays leave from or arrive at. On a curve `element` names the piece, so that a ray never hits the line or circle it
-// leaves at the place it leaves it, and no epsilon is needed.
+// A point rays leave from or arrive at. On a curve `element` names the piece, so that a ray never hits the line or
+// circle it leaves at the place it leaves it, and no epsilon is needed.
 struct SurfacePoint {
   Point2 position;
   ElementId element = ElementId::kNone;
@@ -29,7 +29,6 @@ struct Hit {
 class RayCaster {
  public:
   explicit RayCaster(std::shared_ptr<const Scene> scene);
-  ~RayCaster();
 
   // The first curve hit by from.position + t direction, t > 0. Ties break by (distance, element). Closed at shared end
   // points: a ray through a point where two curves meet, to the accuracy of the coordinates, hits one of them.
@@ -39,11 +38,11 @@ class RayCaster {
   bool Visible(const SurfacePoint& from, const SurfacePoint& to) const;
 
   const Scene& scene() const { return *scene_; }
+  const Bvh& bvh() const { return bvh_; }
 
  private:
-  struct Tree;
   std::shared_ptr<const Scene> scene_;
-  std::unique_ptr<const Tree> tree_;
+  Bvh bvh_;
 };
 
 }  // namespace flatlight

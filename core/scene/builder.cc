@@ -162,7 +162,7 @@ void SceneBuilder::AddPiece(std::size_t curve, Point2 a, Point2 b) {
   piece.carrier = static_cast<std::uint32_t>(pieces_.size());
   piece.a = a;
   piece.b = b;
-  piece.length = std::hypot(b.x - a.x, b.y - a.y);
+  piece.length = Length(b - a);
   if (LengthSquared(b - a) < 1e-280) {
     diagnostics_.Add("plane.curves[" + std::to_string(curve) + "]",
                      "has a piece too short to be told from a point beside the size and place of the whole scene");

@@ -37,9 +37,9 @@ Carrier CarrierOf(const Element& element) {
   // Arcs of one circle are few: all are compared.
   if (element.kind == Element::Kind::kArc) return {{element.center.x, element.center.y, 3 + element.radius}, 0, 1};
   const Vector2 along = element.b - element.a;
-  Vector2 direction = along / std::hypot(along.x, along.y);
-  // One of the two directions of the line; near vertical the double angle below hides which one was taken.
-  if (direction.x < 0 || (direction.x == 0 && direction.y < 0)) direction = -direction;
+  Vector2 direction = Normalized(along);
+  // One of the two directions of the line: which one flips only at right angles to a direction that nobody uses.
+  if (Dot(direction, {0.8371, 0.5470}) < 0) direction = -direction;
   const double s = Dot(direction, element.a - Point2{});
   const double t = Dot(direction, element.b - Point2{});
   return {{direction.x * direction.x - direction.y * direction.y, 2 * direction.x * direction.y,

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/plane/intersect.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/tolerances.h"
+
+namespace flatlight {
+namespace {
+
+// Whether a point of the circle belongs to the arc. An arc of at most a quarter is the part of its circle between the
+// perpendiculars on its chord's ends and on the chord's outer side.
+bool OnArc(const Element& arc, Vector2 from_a) {
+  const Vector2 chord = arc.b - arc.a;
+  const double length = Length(chord);
+  const double along = Dot(from_a, chord);
+  const double slack = kTouchDistance * length;
+  return along >= -slack && along <= length * length + slack &&
+         arc.Orientation() * Cross(chord, from_a) <= slack + 1e-9 * length * arc.length;
+}
+
+void Keep(const Element& arc, Vector2 origin_from_a, Vector2 direction, double t, Crossings& crossings) {
+  if (OnArc(arc, origin_from_a + t * direction)) crossings.t[crossings.count++] = t;
+}
+
+}  // namespace
+
+Crossings CrossSegment(const Element& segment, Point2 origin, Vector2 direction) {
+  const Vector2 a = segment.a - origin;
+  const Vector2 b = segment.b - origin;
+  // On which side of the line each end lies: the same arithmetic for every element that shares the end.
+  const double side_a = Cross(direction, a);
+  const double side_b = Cross(direction, b);
+  const double length_squared = LengthSquared(direction);
+  const double slack = kTouchDistance * std::sqrt(length_squared);
+  if ((side_a > slack && side_b > slack) || (side_a < -slack && side_b < -slack)) return {};
+  double near = Dot(a, direction) / length_squared;
+  double far = Dot(b, direction) / length_squared;
+  if (near > far) std::swap(near, far);
+  const Vector2 along = segment.b - segment.a;
+  const double denominator = Cross(direction, along);
+  const double t = denominator != 0 ? Cross(a, along) / denominator : near;
+  return {1, {std::clamp(t, near, far), 0}};
+}
+
+Crossings CrossArc(const Element& arc, Point2 origin, Vector2 direction) {
+  // The circle's equation about the arc's end a, with q = p - a and u the outward normal there:
+  // q.u + |q|^2/(2 r) = 0. It loses no digits as r grows; with p on the line it reads A t^2/2 + B t + C = 0.
+  const Vector2 q = origin - arc.a;
+  const double bend = 1 / arc.radius;
+  const double a = bend * LengthSquared(direction);
+  const double b = Dot(direction, arc.radial_a + bend * q);
+  const double c = Dot(q, arc.radial_a) + 0.5 * bend * LengthSquared(q);
+  const double discriminant = b * b - 2 * a * c;
+  if (discriminant < 0) return {};
+  const double root = -b - std::copysign(std::sqrt(discriminant), b);
+  Crossings crossings;
+  if (root == 0) {
+    Keep(arc, q, direction, 0, crossings);
+    return crossings;
+  }
+  const double t0 = root / a;
+  const double t1 = 2 * c / root;
+  Keep(arc, q, direction, std::min(t0, t1), crossings);
+  if (t0 != t1) Keep(arc, q, direction, std::max(t0, t1), crossings);
+  return crossings;
+}
+
+Crossings CrossOwnCircle(const Element& arc, Point2 on_circle, Vector2 direction) {
+  const Vector2 q = on_circle - arc.a;
+  const double bend = 1 / arc.radius;
+  const Vector2 outward = Normalized(arc.radial_a + bend * q);
+  Crossings crossings;
+  Keep(arc, q, direction, -2 * Dot(direction, outward) / (bend * LengthSquared(direction)), crossings);
+  return crossings;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/plane/path_tracing/emitter_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/math/trig.h"
+
+namespace flatlight {
+namespace {
+
+constexpr std::uint32_t kNotAPiece = 0xffffffff;
+
+Vector2 FrontNormal(const Element& arc, Point2 point) {
+  return (arc.Orientation() / arc.radius) * (arc.center - point);
+}
+
+Point2 ArcPoint(const Element& arc, double fraction) {
+  const SinCosValue turn = SinCos(arc.start_angle + fraction * arc.sweep_angle);
+  return arc.center + arc.radius * Vector2{turn.cos, turn.sin};
+}
+
+}  // namespace
+
+EmitterSampler::EmitterSampler(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+  double power = 0;
+  piece_of_element_.assign(scene_->elements().size(), kNotAPiece);
+  for (std::size_t i = 0; i < scene_->elements().size(); ++i) {
+    const Element& element = scene_->elements()[i];
+    const Curve& curve = scene_->curve(element.curve);
+    if (!curve.Emits()) continue;
+    Piece piece;
+    piece.id = static_cast<ElementId>(i);
+    piece.element = element;
+    if (element.kind == Element::Kind::kArc) piece.shape = element.full_circle ? Shape::kCircle : Shape::kArc;
+    piece.sides = curve.two_sided ? EmittingSides::kBoth : EmittingSides::kFront;
+    piece.radiance = curve.radiance;
+    piece.brightness = curve.radiance.Max();
+    power += piece.brightness * element.length * (curve.two_sided ? 2 : 1);
+    piece.power_end = power;
+    piece_of_element_[i] = static_cast<std::uint32_t>(pieces_.size());
+    pieces_.push_back(piece);
+  }
+}
+
+std::size_t EmitterSampler::DropUnseen() {
+  const auto unseen = [this](const Piece& piece) {
+    if (piece.shape != Shape::kSegment) return false;
+    for (const Probe& probe : scene_->probes()) {
+      for (const Receiver& receiver : probe.receivers) {
+        Vertex vertex;
+        vertex.at = {receiver.position, receiver.element};
+        vertex.normal = receiver.normal;
+        if (receiver.element != ElementId::kNone) vertex.carrier = scene_->element(receiver.element).carrier;
+        if (!SegmentInterval(piece.element, piece.sides, vertex).empty()) return false;
+      }
+    }
+    return true;
+  };
+  const std::size_t before = pieces_.size();
+  pieces_.erase(std::remove_if(pieces_.begin(), pieces_.end(), unseen), pieces_.end());
+  piece_of_element_.assign(piece_of_element_.size(), kNotAPiece);
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    piece_of_element_[static_cast<std::size_t>(pieces_[i].id)] = static_cast<std::uint32_t>(i);
+  }
+  return before - pieces_.size();
+}
+
+EmitterSampler::View::View(const EmitterSampler& sampler, const Vertex& vertex) : sampler_(sampler), vertex_(vertex) {
+  if (!sampler_.weighs()) {
+    total_ = sampler_.pieces_.back().power_end;
+    return;
+  }
+  double dimmest = std::numeric_limits<double>::infinity();
+  bool arcs = false;
+  for (std::size_t i = 0; i < sampler_.pieces_.size(); ++i) {
+    seen_[i] = See(i);
+    if (seen_[i].weight == 0) continue;
+    total_ += seen_[i].weight;
+    dimmest = std::min(dimmest, sampler_.pieces_[i].brightness);
+    arcs = arcs || sampler_.pieces_[i].shape == Shape::kArc;
+  }
+  sufficient_ = !arcs && total_ <= 2 * dimmest;
+}
+
+EmitterSampler::View::Seen EmitterSampler::View::See(std::size_t index) const {
+  const Piece& piece = sampler_.pieces_[index];
+  Seen seen;
+  switch (piece.shape) {
+    case Shape::kSegment:
+      seen.interval = SegmentInterval(piece.element, piece.sides, vertex_);
+      break;
+    case Shape::kCircle:
+      seen.interval = CircleInterval(piece.element, piece.sides, vertex_);
+      break;
+    case Shape::kArc:
+      // A guess, positive everywhere: length over distance, at most the whole half circle of directions.
+      const Element& arc = piece.element;
+      const double distance = Length(ArcPoint(arc, 0.5) - vertex_.at.position);
+      seen.interval = {-1, std::min(2.0, arc.length / distance)};
+      break;
+  }
+  seen.weight = seen.interval.empty() ? 0 : piece.brightness * seen.interval.width;
+  return seen;
+}
+
+std::optional<EmitterSample> EmitterSampler::View::Sample(double u) const {
+  const std::vector<Piece>& pieces = sampler_.pieces_;
+  // Choose a piece; the same number, rescaled, then chooses the place on it.
+  const double target = u * total_;
+  std::size_t index = 0;
+  double begin = 0;
+  double weight = 0;
+  Seen seen;
+  if (sampler_.weighs()) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (seen_[i].weight == 0) continue;
+      begin += weight;
+      index = i;
+      weight = seen_[i].weight;
+      if (target < begin + weight) break;
+    }
+    seen = seen_[index];
+  } else {
+    const auto found = std::upper_bound(pieces.begin(), pieces.end() - 1, target,
+                                        [](double t, const Piece& piece) { return t < piece.power_end; });
+    index = static_cast<std::size_t>(found - pieces.begin());
+    begin = index == 0 ? 0 : pieces[index - 1].power_end;
+    weight = pieces[index].power_end - begin;
+    seen = See(index);
+  }
+  const double probability = weight / total_;
+  const double place = std::clamp((target - begin) / weight, 0.0, 1.0);
+  if (seen.interval.empty()) return std::nullopt;
+  const Piece& piece = pieces[index];
+  if (piece.shape == Shape::kArc) return SampleArc(index, probability, place);
+  const double sine = std::clamp(seen.interval.low + place * seen.interval.width, -1.0, 1.0);
+  EmitterSample sample;
+  sample.cosine = CosineOf(sine);
+  if (sample.cosine == 0) return std::nullopt;
+  const Vector2 direction = vertex_.Direction(sine, sample.cosine);
+  const Point2 position = piece.shape == Shape::kSegment ? PointOnSegment(piece.element, vertex_, direction)
+                                                         : PointOnCircle(piece.element, vertex_, direction);
+  sample.point = {position, piece.id};
+  sample.radiance = piece.radiance;
+  sample.density = probability * sample.cosine / seen.interval.width;
+  return sample;
+}
+
+std::optional<EmitterSample> EmitterSampler::View::SampleArc(std::size_t index, double probability, double u) const {
+  const Piece& piece = sampler_.pieces_[index];
+  EmitterSample sample;
+  sample.point = {ArcPoint(piece.element, u), piece.id};
+  const Vector2 toward = sample.point.position - vertex_.at.position;
+  const double distance = Length(toward);
+  sample.cosine = Dot(vertex_.normal, toward) / distance;
+  double emitter_cosine = -Dot(FrontNormal(piece.element, sample.point.position), toward) / distance;
+  if (piece.sides == EmittingSides::kBoth) emitter_cosine = std::abs(emitter_cosine);
+  // Written so that a vertex at the very same place (0/0) gives nothing too.
+  if (!(sample.cosine > 0) || !(emitter_cosine > 0)) return std::nullopt;
+  sample.radiance = piece.radiance;
+  sample.density = probability * distance / (emitter_cosine * piece.element.length);
+  return sample;
+}
+
+double EmitterSampler::View::Density(const Hit& hit, Vector2 direction, double cosine) const {
+  const std::uint32_t index = sampler_.piece_of_element_[static_cast<std::size_t>(hit.element)];
+  if (index == kNotAPiece || total_ == 0) return 0;
+  const Piece& piece = sampler_.pieces_[index];
+  const Seen seen = sampler_.weighs() ? seen_[index] : See(index);
+  if (seen.interval.empty()) return 0;
+  const double begin = index == 0 ? 0 : sampler_.pieces_[index - 1].power_end;
+  const double probability = (sampler_.weighs() ? seen.weight : piece.power_end - begin) / total_;
+  if (piece.shape == Shape::kArc) {
+    const double emitter_cosine = std::abs(Dot(hit.normal, direction));
+    return probability * hit.distance / (emitter_cosine * piece.element.length);
+  }
+  return probability * cosine / seen.interval.width;
+}
+
+}  // namespace flatlight

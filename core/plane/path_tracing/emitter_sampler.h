@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_PLANE_PATH_TRACING_EMITTER_SAMPLER_H_
+#define FLATLIGHT_CORE_PLANE_PATH_TRACING_EMITTER_SAMPLER_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/plane/path_tracing/sine_interval.h"
+#include "core/plane/path_tracing/vertex.h"
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+// A point of an emitter, as seen from a vertex.
+struct EmitterSample {
+  SurfacePoint point;
+  Spectrum radiance;
+  double cosine = 0;   // At the vertex; positive.
+  double density = 0;  // Per radian at the vertex.
+};
+
+// Chooses points on emitters for a vertex. With up to kMostWeighed emitting pieces they are weighed at every vertex by
+// the irradiance they would give if nothing blocked; with more they are chosen by power. Straight and circular emitters
+// are sampled uniformly in the sine of the direction, other arcs uniformly in arc length. All densities are per angle:
+// pdf_theta = pdf_length * distance / cosine at the emitter (THEORY 18 B11).
+class EmitterSampler {
+ public:
+  static constexpr std::size_t kMostWeighed = 16;
+
+  explicit EmitterSampler(std::shared_ptr<const Scene> scene);
+
+  // Leaves out pieces that light none of the receivers directly, as far as a cheap proof goes: each receiver lies
+  // behind the piece's line, or the piece below the receiver's horizon. Changes no result if only direct light is
+  // wanted. Returns how many were left out.
+  std::size_t DropUnseen();
+
+  bool empty() const { return pieces_.empty(); }
+  // Whether emitters are weighed at every vertex.
+  bool weighs() const { return pieces_.size() <= kMostWeighed; }
+
+  // The emitters as seen from one vertex. Refers to both arguments.
+  class View {
+   public:
+    View(const EmitterSampler& sampler, const Vertex& vertex);
+
+    // No emitter can light the vertex.
+    bool empty() const { return total_ == 0; }
+    // Emitter sampling alone has no more variance than cosine sampling alone: rays that hit an emitter by chance need
+    // not be counted. The variances are T * E - E^2 and 2 * (integral of L^2 V ds) - E^2, where T is the irradiance
+    // that emitters would give unblocked; so it is enough that T <= 2 * (smallest radiance in view).
+    bool sufficient() const { return sufficient_; }
+    // A point chosen by one number in [0, 1). Absent if it does not light the vertex.
+    std::optional<EmitterSample> Sample(double u) const;
+    // The density per radian with which Sample gives the point `hit`, in `direction` of this cosine.
+    double Density(const Hit& hit, Vector2 direction, double cosine) const;
+
+   private:
+    struct Seen {
+      SineInterval interval;
+      double weight = 0;
+    };
+    Seen See(std::size_t piece) const;
+    std::optional<EmitterSample> SampleArc(std::size_t piece, double probability, double u) const;
+
+    const EmitterSampler& sampler_;
+    const Vertex& vertex_;
+    std::array<Seen, kMostWeighed> seen_;  // By piece, if weighed.
+    double total_ = 0;
+    bool sufficient_ = false;
+  };
+
+ private:
+  enum class Shape : std::uint8_t { kSegment, kCircle, kArc };
+  struct Piece {
+    ElementId id = ElementId::kNone;
+    Element element;
+    Shape shape = Shape::kSegment;
+    EmittingSides sides = EmittingSides::kFront;
+    Spectrum radiance;
+    double brightness = 0;  // Largest channel.
+    double power_end = 0;   // Sum of the powers up to and with this piece.
+  };
+
+  std::shared_ptr<const Scene> scene_;
+  std::vector<Piece> pieces_;
+  std::vector<std::uint32_t> piece_of_element_;  // kNotAPiece if it does not emit.
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_PLANE_PATH_TRACING_EMITTER_SAMPLER_H_

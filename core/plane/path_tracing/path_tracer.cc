@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/plane/path_tracing/path_tracer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+
+namespace flatlight {
+namespace {
+
+// Paths lighter than the first play roulette; survivors get the second weight. Above a quarter the first reflections in
+// rooms of ordinary brightness stay free of roulette's noise; with weights kept below a half, a path goes on for no longer
+// than its share of the light is worth.
+constexpr double kRouletteBelow = 0.25;
+constexpr double kSurvivorWeight = 0.5;
+
+// Weight of the first of two techniques.
+double PowerHeuristic(double density, double other_density) {
+  const double ratio = other_density / density;
+  return 1 / (1 + ratio * ratio);
+}
+
+template <int kChannels>
+double Largest(const std::array<double, kChannels>& weight) {
+  return *std::max_element(weight.begin(), weight.end());
+}
+
+}  // namespace
+
+PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracingOptions& options)
+    : caster_(std::move(caster)),
+      scene_(caster_->scene()),
+      options_(options),
+      channels_(options.one_channel ? 1 : kMaxChannels),
+      emitters_(std::shared_ptr<const Scene>(caster_, &caster_->scene())) {
+  if (options_.drop_unseen_emitters && emitters_.weighs()) emitters_.DropUnseen();
+  surfaces_.reserve(scene_.curves().size());
+  for (const Curve& curve : scene_.curves()) {
+    surfaces_.push_back({curve.reflectance, curve.EmittedRadiance(Side::kFront), curve.EmittedRadiance(Side::kBack)});
+  }
+}
+
+void PathTracer::AddPath(const Receiver& receiver, const SampleStream& stream, std::uint32_t index,
+                         const Cancellation& cancellation, std::span<double> irradiance, double& rays) const {
+  if (emitters_.empty()) return;
+  if (channels_ == 1) {
+    AddPathOf<1>(receiver, stream, index, cancellation, irradiance, rays);
+  } else {
+    AddPathOf<kMaxChannels>(receiver, stream, index, cancellation, irradiance, rays);
+  }
+}
+
+template <int kChannels>
+void PathTracer::AddPathOf(const Receiver& receiver, const SampleStream& stream, std::uint32_t index,
+                           const Cancellation& cancellation, std::span<double> irradiance, double& rays) const {
+  std::array<double, kChannels> value{};
+  std::array<double, kChannels> weight;
+  weight.fill(1);
+  const auto add = [&](double factor, const Spectrum& radiance) {
+    for (std::size_t c = 0; c < kChannels; ++c) value[c] += weight[c] * (factor * radiance.value[c]);
+  };
+  const std::uint32_t last_depth = options_.max_bounces.value_or(std::numeric_limits<std::uint32_t>::max());
+  Vertex vertex;
+  vertex.at = {receiver.position, receiver.element};
+  vertex.normal = receiver.normal;
+  if (receiver.element != ElementId::kNone) vertex.carrier = scene_.element(receiver.element).carrier;
+
+  for (std::uint32_t depth = 0; !cancellation.cancelled(); ++depth) {
+    const bool last = depth == last_depth;
+    const SamplePair random = stream.Pair(index, depth);
+    const EmitterSampler::View view(emitters_, vertex);
+    if (!view.empty()) {
+      if (const std::optional<EmitterSample> sample = view.Sample(random.u)) {
+        if (!options_.assume_visible) ++rays;
+        if (options_.assume_visible || caster_->Visible(vertex.at, sample->point)) {
+          const double share = view.sufficient() ? 1 : PowerHeuristic(sample->density, sample->cosine / 2);
+          add(share * (sample->cosine / sample->density), sample->radiance);
+        }
+      }
+    }
+    // The last ray could only find emitters, and those are done with.
+    if (last && (view.empty() || view.sufficient())) break;
+
+    const double sine = 2 * random.v - 1;
+    const double cosine = CosineOf(sine);
+    const Vector2 direction = vertex.Direction(sine, cosine);
+    ++rays;
+    const std::optional<Hit> hit = caster_->ClosestHit(vertex.at, direction);
+    if (!hit.has_value()) break;
+    const Element& element = scene_.element(hit->element);
+    const Surface& surface = surfaces_[static_cast<std::size_t>(element.curve)];
+    const bool front = Dot(hit->normal, direction) < 0;
+    const Spectrum& radiance = front ? surface.front_radiance : surface.back_radiance;
+    if (!radiance.IsBlack()) {
+      const double emitter_density = view.Density(*hit, direction, cosine);
+      if (emitter_density == 0) {
+        add(2, radiance);
+      } else if (!view.sufficient()) {
+        add(2 * PowerHeuristic(cosine / 2, emitter_density), radiance);
+      }
+    }
+    if (last) break;
+
+    for (std::size_t c = 0; c < kChannels; ++c) weight[c] *= surface.reflectance.value[c];
+    const double largest = Largest<kChannels>(weight);
+    if (largest == 0 && options_.end_black_paths) break;
+    if (largest < kRouletteBelow) {
+      const double survival = largest == 0 ? kSurvivorWeight : largest / kSurvivorWeight;
+      if (stream.Single(index, depth) >= survival) break;
+      for (double& w : weight) w /= survival;
+    }
+    vertex.at = {hit->position, hit->element};
+    vertex.normal = front ? hit->normal : -hit->normal;
+    vertex.carrier = element.carrier;
+  }
+  for (std::size_t c = 0; c < kChannels; ++c) irradiance[c] += value[c];
+}
+
+}  // namespace flatlight
