@@ -14,12 +14,13 @@
 namespace flatlight {
 
 // Fill the fields for points [first, first + count) of a probe; world units.
-void FillProbeGeometry(const Scene& scene, std::size_t probe, std::size_t first, std::size_t count, v1::ProbeResult& out);
+void FillProbeGeometry(const Scene& scene, std::size_t probe, std::size_t first, std::size_t count,
+                       v1::ProbeResult& out);
 void FillProbeValues(const Field& field, int channels, std::size_t probe, std::size_t first, std::size_t count,
                      v1::ProbeResult& out);
 
-// All probes, both of the above, and error_bound and rays. The caller fills in what it alone knows: job key, build, settings,
-// plan, times, end reason.
+// All probes, both of the above, and error_bound and rays. The caller fills in what it alone knows: job key, build,
+// settings, plan, times, end reason.
 v1::RenderResult ResultToProto(const Scene& scene, const Field& field);
 v1::EndReason EndReasonToProto(EndReason reason);
 v1::SceneTraits TraitsToProto(const SceneTraits& traits);

@@ -14,8 +14,8 @@ namespace flatlight {
 inline constexpr int kMaxSceneDepth = 32;
 
 // Reads the JSON form of v1::Scene. Every unknown, duplicate or null field and every value of a wrong type goes into
-// `diagnostics` with its path; a syntax error ends the reading and is reported with line and column.
-// Meaning (ranges, names) is not checked here: see SceneFromProto. Returns whether there was no mistake.
+// `diagnostics` with its path; a syntax error ends the reading, is reported with line and column, and leaves the scene
+// empty. Meaning (ranges, names) is not checked here: see SceneFromProto. Returns whether there was no mistake.
 bool ReadSceneJson(std::string_view json, v1::Scene& scene, Diagnostics& diagnostics);
 
 }  // namespace flatlight

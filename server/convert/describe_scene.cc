@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/convert/describe_scene.h"
+
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace flatlight {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// A place in the scene file. Text is made only when something is missing: scenes may have a million curves.
+struct Place {
+  const Place* parent;
+  const char* name;
+  int index = -1;
+
+  std::string Path() const {
+    std::string path = parent == nullptr ? name : parent->Path() + '.' + name;
+    if (index >= 0) path += '[' + std::to_string(index) + ']';
+    return path;
+  }
+};
+
+class Describer {
+ public:
+  explicit Describer(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+
+  MaterialDescription Describe(const v1::Material& proto) const {
+    MaterialDescription material;
+    material.name = proto.name();
+    if (proto.has_lambertian()) {
+      const auto& values = proto.lambertian().reflectance();
+      material.kind = LambertianDescription{{values.begin(), values.end()}};
+    }
+    return material;
+  }
+
+  CurveDescription Describe(const v1::Curve& proto, const Place& place) {
+    CurveDescription curve;
+    curve.name = proto.name();
+    if (proto.has_segment()) {
+      const Place segment{&place, "segment"};
+      curve.shape = SegmentDescription{Point(proto.segment().has_a(), proto.segment().a(), {&segment, "a"}),
+                                       Point(proto.segment().has_b(), proto.segment().b(), {&segment, "b"})};
+    } else if (proto.has_polyline()) {
+      curve.shape = Describe(proto.polyline(), Place{&place, "polyline"});
+    } else if (proto.has_arc()) {
+      curve.shape = Describe(proto.arc(), Place{&place, "arc"});
+    }
+    curve.material = proto.material();
+    if (proto.has_emission()) {
+      const auto& values = proto.emission().radiance();
+      curve.emission = EmissionDescription{{values.begin(), values.end()}, proto.emission().two_sided()};
+    }
+    return curve;
+  }
+
+  ProbeDescription Describe(const v1::Probe& proto, const Place& place) {
+    ProbeDescription probe;
+    probe.name = proto.name();
+    if (proto.has_curve()) probe.curve = proto.curve();
+    if (proto.has_count()) probe.count = proto.count();
+    if (proto.has_from()) probe.from = proto.from();
+    if (proto.has_to()) probe.to = proto.to();
+    if (proto.side() == v1::Probe::FRONT) probe.side = Side::kFront;
+    if (proto.side() == v1::Probe::BACK) probe.side = Side::kBack;
+    probe.points.reserve(static_cast<std::size_t>(proto.points_size()));
+    for (int i = 0; i < proto.points_size(); ++i) {
+      const v1::ProbePoint& from = proto.points(i);
+      const Place point{&place, "points", i};
+      const Point2 normal =
+          Pair(from.has_normal(), from.normal(), {&point, "normal"}, "an object with x and y, a direction,");
+      probe.points.push_back({Point(from.has_position(), from.position(), {&point, "position"}), {normal.x, normal.y}});
+    }
+    return probe;
+  }
+
+ private:
+  PolylineDescription Describe(const v1::Polyline& proto, const Place& place) {
+    PolylineDescription polyline;
+    polyline.closed = proto.closed();
+    polyline.points.reserve(static_cast<std::size_t>(proto.points_size()));
+    for (int i = 0; i < proto.points_size(); ++i) {
+      polyline.points.push_back(Point(true, proto.points(i), {&place, "points", i}));
+    }
+    return polyline;
+  }
+
+  ArcDescription Describe(const v1::Arc& proto, const Place& place) {
+    ArcDescription arc;
+    arc.center = Point(proto.has_center(), proto.center(), {&place, "center"});
+    arc.radius = Number(proto.has_radius(), proto.radius(), {&place, "radius"}, "a number above 0, in metres,");
+    arc.start_angle =
+        Number(proto.has_start_angle(), proto.start_angle(), {&place, "startAngle"}, "a number, in radians,");
+    arc.sweep_angle = Number(proto.has_sweep_angle(), proto.sweep_angle(), {&place, "sweepAngle"},
+                             "a number from -2 pi to 2 pi and not 0, in radians,");
+    return arc;
+  }
+
+  double Number(bool given, double value, const Place& place, const char* wanted) {
+    if (given) return value;
+    diagnostics_.Add(place.Path(), std::string("is missing; ") + wanted + " is needed");
+    return kMissing;
+  }
+
+  // The two numbers of a point or of a direction.
+  template <typename Proto>
+  Point2 Pair(bool given, const Proto& proto, const Place& place, const char* wanted) {
+    if (!given) {
+      diagnostics_.Add(place.Path(), std::string("is missing; ") + wanted + " is needed");
+      return {kMissing, kMissing};
+    }
+    const double x = Number(proto.has_x(), proto.x(), {&place, "x"}, "a number");
+    const double y = Number(proto.has_y(), proto.y(), {&place, "y"}, "a number");
+    return {x, y};
+  }
+
+  Point2 Point(bool given, const v1::Point2& proto, const Place& place) {
+    return Pair(given, proto, place, "an object with x and y, in metres,");
+  }
+
+  Diagnostics& diagnostics_;
+};
+
+}  // namespace
+
+SceneDescription DescribeScene(const v1::Scene& proto, Diagnostics& diagnostics) {
+  SceneDescription scene;
+  scene.name = proto.name();
+  if (!proto.has_plane()) diagnostics.Add("plane", "is missing; an object with materials and curves is needed");
+  Describer describer(diagnostics);
+  const v1::Plane& plane = proto.plane();
+  const Place plane_place{nullptr, "plane"};
+  for (const v1::Material& material : plane.materials()) scene.materials.push_back(describer.Describe(material));
+  scene.curves.reserve(static_cast<std::size_t>(plane.curves_size()));
+  for (int i = 0; i < plane.curves_size(); ++i) {
+    scene.curves.push_back(describer.Describe(plane.curves(i), Place{&plane_place, "curves", i}));
+  }
+  for (int i = 0; i < proto.probes_size(); ++i) {
+    scene.probes.push_back(describer.Describe(proto.probes(i), Place{nullptr, "probes", i}));
+  }
+  return scene;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/convert/result_convert.h"
+
+#include <google/protobuf/repeated_field.h>
+
+#include <vector>
+
+#include "core/math/check.h"
+
+namespace flatlight {
+namespace {
+
+using Values = google::protobuf::RepeatedField<double>;
+
+// Entries [first, first + count) of a flat array with `width` values an entry. An empty array stays absent.
+void AddSlice(const std::vector<double>& values, std::size_t first, std::size_t count, std::size_t width, Values& out) {
+  if (values.empty()) return;
+  FLATLIGHT_DCHECK((first + count) * width <= values.size());
+  const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first * width);
+  out.Add(begin, begin + static_cast<std::ptrdiff_t>(count * width));
+}
+
+}  // namespace
+
+void FillProbeGeometry(const Scene& scene, std::size_t probe, std::size_t first, std::size_t count,
+                       v1::ProbeResult& out) {
+  const Probe& source = scene.probes()[probe];
+  FLATLIGHT_DCHECK(first + count <= source.receivers.size());
+  out.set_name(source.name);
+  const bool on_curve = source.curve != CurveId::kNone;
+  const int size = static_cast<int>(count);
+  out.mutable_positions()->Reserve(out.positions_size() + 2 * size);
+  out.mutable_normals()->Reserve(out.normals_size() + 2 * size);
+  if (on_curve) out.mutable_arc_length()->Reserve(out.arc_length_size() + size);
+  for (std::size_t i = first; i < first + count; ++i) {
+    const Receiver& receiver = source.receivers[i];
+    const Point2 position = scene.ToWorld(receiver.position);
+    out.add_positions(position.x);
+    out.add_positions(position.y);
+    out.add_normals(receiver.normal.x);
+    out.add_normals(receiver.normal.y);
+    if (on_curve) out.add_arc_length(scene.frame().scale * receiver.arc_length);
+  }
+}
+
+void FillProbeValues(const Field& field, int channels, std::size_t probe, std::size_t first, std::size_t count,
+                     v1::ProbeResult& out) {
+  const ProbeField& source = field.probes[probe];
+  const auto width = static_cast<std::size_t>(channels);
+  out.set_quantity(v1::ProbeResult::IRRADIANCE);
+  out.set_count(static_cast<std::uint32_t>(count));
+  out.set_channels(static_cast<std::uint32_t>(channels));
+  AddSlice(source.irradiance, first, count, width, *out.mutable_irradiance());
+  AddSlice(source.standard_error, first, count, width, *out.mutable_standard_error());
+  AddSlice(source.gradient, first, count, width, *out.mutable_gradient());
+  AddSlice(source.gradient_error, first, count, width, *out.mutable_gradient_error());
+  AddSlice(source.hessian, first, count, width, *out.mutable_hessian());
+  AddSlice(source.hessian_error, first, count, width, *out.mutable_hessian_error());
+  AddSlice(source.samples, first, count, 1, *out.mutable_samples());
+}
+
+v1::RenderResult ResultToProto(const Scene& scene, const Field& field) {
+  v1::RenderResult result;
+  result.set_scene(scene.name());
+  result.set_world_hash(scene.world_hash());
+  result.set_probe_hash(scene.probe_hash());
+  for (std::size_t probe = 0; probe < scene.probes().size(); ++probe) {
+    const std::size_t count = scene.probes()[probe].receivers.size();
+    v1::ProbeResult& out = *result.add_probes();
+    FillProbeGeometry(scene, probe, 0, count, out);
+    FillProbeValues(field, scene.channels(), probe, 0, count, out);
+  }
+  result.mutable_statistics()->set_rays(field.rays);
+  if (field.error_bound) result.mutable_statistics()->set_error_bound(*field.error_bound);
+  return result;
+}
+
+v1::EndReason EndReasonToProto(EndReason reason) {
+  switch (reason) {
+    case EndReason::kConverged:
+      return v1::CONVERGED;
+    case EndReason::kSamplesDone:
+      return v1::SAMPLES_DONE;
+    case EndReason::kTargetReached:
+      return v1::TARGET_REACHED;
+    case EndReason::kTimeLimit:
+      return v1::TIME_LIMIT;
+  }
+  return v1::END_REASON_UNSPECIFIED;
+}
+
+v1::SceneTraits TraitsToProto(const SceneTraits& traits) {
+  v1::SceneTraits proto;
+  proto.set_curves(static_cast<double>(traits.curves));
+  proto.set_elements(static_cast<double>(traits.elements));
+  proto.set_emitters(static_cast<double>(traits.emitting_curves));
+  proto.set_probe_points(static_cast<double>(traits.probe_points));
+  proto.set_max_reflectance(traits.max_reflectance);
+  proto.set_grey(traits.grey);
+  return proto;
+}
+
+}  // namespace flatlight

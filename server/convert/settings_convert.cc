@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/convert/settings_convert.h"
+
+#include "server/convert/unknown_fields.h"
+
+namespace flatlight {
+namespace {
+
+v1::Settings::Method ToProto(Method method) {
+  switch (method) {
+    case Method::kExact:
+      return v1::Settings::EXACT;
+    case Method::kPathTracing:
+      return v1::Settings::PATH_TRACING;
+  }
+  return v1::Settings::METHOD_UNSPECIFIED;
+}
+
+v1::Settings::Derivatives ToProto(Derivatives derivatives) {
+  switch (derivatives) {
+    case Derivatives::kNone:
+      return v1::Settings::NONE;
+    case Derivatives::kGradient:
+      return v1::Settings::GRADIENT;
+    case Derivatives::kHessian:
+      return v1::Settings::HESSIAN;
+  }
+  return v1::Settings::DERIVATIVES_UNSPECIFIED;
+}
+
+v1::Plan::Skip::Decision ToProto(SkipDecision decision) {
+  switch (decision) {
+    case SkipDecision::kTaken:
+      return v1::Plan::Skip::TAKEN;
+    case SkipDecision::kNotApplicable:
+      return v1::Plan::Skip::NOT_APPLICABLE;
+    case SkipDecision::kDisabled:
+      return v1::Plan::Skip::DISABLED;
+  }
+  return v1::Plan::Skip::DECISION_UNSPECIFIED;
+}
+
+}  // namespace
+
+Settings SettingsFromProto(const v1::Settings& proto, Diagnostics& diagnostics) {
+  ReportUnknownFields(proto, "settings", diagnostics);
+  Settings settings;
+  if (proto.method() == v1::Settings::EXACT) settings.method = Method::kExact;
+  if (proto.method() == v1::Settings::PATH_TRACING) settings.method = Method::kPathTracing;
+  if (proto.has_samples()) settings.samples = proto.samples();
+  if (proto.has_max_bounces()) settings.max_bounces = proto.max_bounces();
+  if (proto.has_seed()) settings.seed = proto.seed();
+  if (proto.derivatives() == v1::Settings::NONE) settings.derivatives = Derivatives::kNone;
+  if (proto.derivatives() == v1::Settings::GRADIENT) settings.derivatives = Derivatives::kGradient;
+  if (proto.derivatives() == v1::Settings::HESSIAN) settings.derivatives = Derivatives::kHessian;
+  if (proto.has_target_error()) settings.target_error = proto.target_error();
+  if (proto.has_time_limit()) settings.time_limit = proto.time_limit();
+  if (proto.has_threads()) settings.threads = proto.threads();
+  settings.no_skip.assign(proto.no_skip().begin(), proto.no_skip().end());
+  return settings;
+}
+
+v1::Settings SettingsToProto(const Settings& settings) {
+  v1::Settings proto;
+  if (settings.method) proto.set_method(ToProto(*settings.method));
+  if (settings.samples) proto.set_samples(*settings.samples);
+  if (settings.max_bounces) proto.set_max_bounces(*settings.max_bounces);
+  if (settings.seed) proto.set_seed(*settings.seed);
+  if (settings.derivatives) proto.set_derivatives(ToProto(*settings.derivatives));
+  if (settings.target_error) proto.set_target_error(*settings.target_error);
+  if (settings.time_limit) proto.set_time_limit(*settings.time_limit);
+  if (settings.threads) proto.set_threads(*settings.threads);
+  for (const std::string& name : settings.no_skip) proto.add_no_skip(name);
+  return proto;
+}
+
+v1::Plan PlanToProto(const Plan& plan) {
+  v1::Plan proto;
+  *proto.mutable_settings() = SettingsToProto(plan.settings);
+  for (const SkipEntry& entry : plan.skips) {
+    v1::Plan::Skip& skip = *proto.add_skips();
+    skip.set_name(entry.name);
+    skip.set_decision(ToProto(entry.decision));
+    skip.set_reason(entry.reason);
+  }
+  for (const PlanPass& entry : plan.passes) {
+    v1::Plan::Pass& pass = *proto.add_passes();
+    pass.set_name(entry.name);
+    pass.set_points(entry.points);
+    pass.set_samples(entry.samples);
+    pass.set_expected_rays(entry.expected_rays);
+  }
+  proto.set_summary(plan.summary);
+  return proto;
+}
+
+}  // namespace flatlight
