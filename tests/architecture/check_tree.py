@@ -104,7 +104,7 @@ def check_includes(tree):
                 continue
             header = pathlib.PurePosixPath(name)
             if header not in tree.files:
-                if opening == '"':
+                if len(header.parts) == 1 and opening == '"' or header.parts[0] in source_tree.FOLDERS:
                     yield f"{where}: no such file; name the header from the root of the tree"
                 continue
             if opening == "<":
@@ -140,7 +140,7 @@ def check_files(tree):
 
 
 def names(targets):
-    return " or ".join(sorted(target.name for target in targets)) or "any target"
+    return " or ".join(sorted(target.name for target in targets)) or "a target that should be there"
 
 
 def violations(root):

@@ -94,6 +94,12 @@ class CheckTreeTest(unittest.TestCase):
     def test_include_relative_to_the_folder(self):
         self.expect("no such file", {"core/scene/scene.cc": source('"scene.h"')})
 
+    def test_include_of_a_header_that_is_gone(self):
+        self.expect("no such file", {"core/scene/scene.cc": source('"core/scene/old.h"')})
+
+    def test_quotes_are_fine_for_other_libraries(self):
+        self.assertEqual(self.violations({"core/scene/scene.cc": source('"absl/status/status.h"')}), [])
+
     def test_own_header_in_angle_brackets(self):
         self.expect('included with ""', {"core/scene/scene.cc": source("<core/math/vec.h>")})
 

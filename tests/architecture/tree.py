@@ -18,7 +18,7 @@ _SCOPES = {"PUBLIC", "PRIVATE", "INTERFACE", "STATIC", "SHARED", "MODULE", "EXCL
 @dataclasses.dataclass
 class Target:
     name: str
-    kind: str  # "library", "program" or "test".
+    kind: str  # "library", "program", "test" or "bench".
     folder: pathlib.PurePosixPath
     files: set = dataclasses.field(default_factory=set)  # Paths from the root.
     dependencies: set = dataclasses.field(default_factory=set)  # As written: flatlight::core_math, GTest::gmock, ...
@@ -88,6 +88,7 @@ def _read_targets(text, folder, targets):
         "flatlight_library": "library",
         "flatlight_program": "program",
         "flatlight_test": "test",
+        "flatlight_bench": "bench",
         "add_library": "library",
         "add_executable": "program",
     }
@@ -97,12 +98,14 @@ def _read_targets(text, folder, targets):
             files = sections.get("HEADERS", []) + sections.get("SOURCES", [])
             files += [word for word in sections[""] if word not in _SCOPES]
             name = words[0]
-            if command == "flatlight_test":
+            if command in ("flatlight_test", "flatlight_bench"):
                 name = "_".join((*folder.parts, words[0]))
                 files.append(words[0] + ".cc")
             target = targets.setdefault(name, Target(name, kinds[command], folder))
             target.files |= {folder / file for file in files}
             target.dependencies |= set(sections.get("DEPS", []) + sections.get("PRIVATE_DEPS", []))
+            if command == "flatlight_bench":
+                target.dependencies.add("flatlight::bench_scenes")
         elif command in ("target_link_libraries", "add_dependencies") and words[0] in targets:
             if command == "target_link_libraries":
                 targets[words[0]].dependencies |= {word for word in words[1:] if word not in _SCOPES}
