@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/gallery/gallery.h"
+
+#include <algorithm>
+
+#include "server/gallery/scene_files.h"
+
+namespace flatlight {
+namespace {
+
+struct Entry {
+  const char* name;  // Of the file in scenes/.
+  const char* title;
+  const char* description;
+};
+
+// In the order in which they are best looked at.
+constexpr Entry kEntries[] = {
+    {"penumbra", "A lamp, a post and a floor",
+     "The shadow of a round post has a soft edge where the lamp is hidden in part, and bounced light fills its core."},
+    {"cornell", "Cornell box",
+     "Between a red and a green wall two tilted boxes shade the floor, and the walls' colours bleed onto it."},
+    {"unit-light", "Unit light",
+     "A light of length 1 at height 1 above a black floor: its irradiance has a closed form with no shadow in it."},
+    {"blocker", "Unit light with a blocker",
+     "A plate below the unit light makes a full shadow, a penumbra and kinks where a visibility event begins or ends."},
+    {"furnace", "White furnace",
+     "In a closed room whose walls all emit 1 and reflect one half the irradiance is 4 everywhere."},
+    {"corner", "Corner",
+     "Where a floor and a wall meet, bounced light changes ever faster: cache records must crowd there."},
+    {"keyhole", "Keyhole", "All light in the second room comes through a gap of 10 cm, which few random paths find."},
+    {"ring", "Sun, moon and crescent in a ring",
+     "Round emitters and blockers in a round room: all that works for straight curves must work for arcs."},
+    {"no-wall", "Lit floor beside nothing",
+     "The unit light with a black wall on its left: pair it with black-wall, which looks different and is lit the "
+     "same."},
+    {"black-wall", "Lit floor beside a black wall",
+     "A black wall on the right changes nothing on the floor, so error control that looks only at distances is "
+     "misled."},
+};
+
+std::vector<GalleryScene> MakeGallery() {
+  std::vector<GalleryScene> gallery;
+  for (const Entry& entry : kEntries) {
+    const auto file = std::find_if(std::begin(kSceneFiles), std::end(kSceneFiles),
+                                   [&](const SceneFile& candidate) { return candidate.name == entry.name; });
+    gallery.push_back({entry.name, entry.title, entry.description, std::string(file->json)});
+  }
+  return gallery;
+}
+
+}  // namespace
+
+const std::vector<GalleryScene>& Gallery() {
+  static const auto* const gallery =
+      new std::vector<GalleryScene>(MakeGallery());  // Never destroyed: no order of exit.
+  return *gallery;
+}
+
+const GalleryScene* FindGalleryScene(std::string_view name) {
+  for (const GalleryScene& scene : Gallery()) {
+    if (scene.name == name) return &scene;
+  }
+  return nullptr;
+}
+
+}  // namespace flatlight
