@@ -42,7 +42,8 @@ constexpr Entry kEntries[] = {
 std::vector<GalleryScene> MakeGallery() {
   std::vector<GalleryScene> gallery;
   for (const Entry& entry : kEntries) {
-    const auto file = std::find_if(std::begin(kSceneFiles), std::end(kSceneFiles),
+    const auto files = SceneFiles();
+    const auto file = std::find_if(files.begin(), files.end(),
                                    [&](const SceneFile& candidate) { return candidate.name == entry.name; });
     gallery.push_back({entry.name, entry.title, entry.description, std::string(file->json)});
   }
