@@ -6,15 +6,12 @@
 #include <limits>
 
 #include "core/math/trig.h"
+#include "core/scene/element_frame.h"
 
 namespace flatlight {
 namespace {
 
 constexpr std::uint32_t kNotAPiece = 0xffffffff;
-
-Vector2 FrontNormal(const Element& arc, Point2 point) {
-  return (arc.Orientation() / arc.radius) * (arc.center - point);
-}
 
 Point2 ArcPoint(const Element& arc, double fraction) {
   const SinCosValue turn = SinCos(arc.start_angle + fraction * arc.sweep_angle);
@@ -33,7 +30,6 @@ EmitterSampler::EmitterSampler(std::shared_ptr<const Scene> scene) : scene_(std:
     Piece piece;
     piece.id = static_cast<ElementId>(i);
     piece.element = element;
-    if (element.kind == Element::Kind::kArc) piece.shape = element.full_circle ? Shape::kCircle : Shape::kArc;
     piece.sides = curve.two_sided ? EmittingSides::kBoth : EmittingSides::kFront;
     piece.radiance = curve.radiance;
     piece.brightness = curve.radiance.Max();
@@ -46,14 +42,13 @@ EmitterSampler::EmitterSampler(std::shared_ptr<const Scene> scene) : scene_(std:
 
 std::size_t EmitterSampler::DropUnseen() {
   const auto unseen = [this](const Piece& piece) {
-    if (piece.shape != Shape::kSegment) return false;
     for (const Probe& probe : scene_->probes()) {
       for (const Receiver& receiver : probe.receivers) {
         Vertex vertex;
         vertex.at = {receiver.position, receiver.element};
         vertex.normal = receiver.normal;
         if (receiver.element != ElementId::kNone) vertex.carrier = scene_->element(receiver.element).carrier;
-        if (!SegmentInterval(piece.element, piece.sides, vertex).empty()) return false;
+        if (RangeOf(piece.element, piece.sides, vertex).kind != EmitterRange::Kind::kNone) return false;
       }
     }
     return true;
@@ -73,35 +68,22 @@ EmitterSampler::View::View(const EmitterSampler& sampler, const Vertex& vertex) 
     return;
   }
   double dimmest = std::numeric_limits<double>::infinity();
-  bool arcs = false;
+  bool by_length = false;
   for (std::size_t i = 0; i < sampler_.pieces_.size(); ++i) {
     seen_[i] = See(i);
     if (seen_[i].weight == 0) continue;
     total_ += seen_[i].weight;
     dimmest = std::min(dimmest, sampler_.pieces_[i].brightness);
-    arcs = arcs || sampler_.pieces_[i].shape == Shape::kArc;
+    by_length = by_length || seen_[i].range.kind == EmitterRange::Kind::kLength;
   }
-  sufficient_ = !arcs && total_ <= 2 * dimmest;
+  sufficient_ = !by_length && total_ <= 2 * dimmest;
 }
 
 EmitterSampler::View::Seen EmitterSampler::View::See(std::size_t index) const {
   const Piece& piece = sampler_.pieces_[index];
   Seen seen;
-  switch (piece.shape) {
-    case Shape::kSegment:
-      seen.interval = SegmentInterval(piece.element, piece.sides, vertex_);
-      break;
-    case Shape::kCircle:
-      seen.interval = CircleInterval(piece.element, piece.sides, vertex_);
-      break;
-    case Shape::kArc:
-      // A guess, positive everywhere: length over distance, at most the whole half circle of directions.
-      const Element& arc = piece.element;
-      const double distance = Length(ArcPoint(arc, 0.5) - vertex_.at.position);
-      seen.interval = {-1, std::min(2.0, arc.length / distance)};
-      break;
-  }
-  seen.weight = seen.interval.empty() ? 0 : piece.brightness * seen.interval.width;
+  seen.range = RangeOf(piece.element, piece.sides, vertex_);
+  if (seen.range.kind != EmitterRange::Kind::kNone) seen.weight = piece.brightness * seen.range.width;
   return seen;
 }
 
@@ -132,23 +114,21 @@ std::optional<EmitterSample> EmitterSampler::View::Sample(double u) const {
   }
   const double probability = weight / total_;
   const double place = std::clamp((target - begin) / weight, 0.0, 1.0);
-  if (seen.interval.empty()) return std::nullopt;
+  if (seen.weight == 0) return std::nullopt;
   const Piece& piece = pieces[index];
-  if (piece.shape == Shape::kArc) return SampleArc(index, probability, place);
-  const double sine = std::clamp(seen.interval.low + place * seen.interval.width, -1.0, 1.0);
+  if (seen.range.kind == EmitterRange::Kind::kLength) return SampleLength(index, probability, place);
+  const double sine = std::clamp(seen.range.low + place * seen.range.width, -1.0, 1.0);
   EmitterSample sample;
   sample.cosine = CosineOf(sine);
   if (sample.cosine == 0) return std::nullopt;
   const Vector2 direction = vertex_.Direction(sine, sample.cosine);
-  const Point2 position = piece.shape == Shape::kSegment ? PointOnSegment(piece.element, vertex_, direction)
-                                                         : PointOnCircle(piece.element, vertex_, direction);
-  sample.point = {position, piece.id};
+  sample.point = {PointInDirection(piece.element, seen.range, vertex_, direction), piece.id};
   sample.radiance = piece.radiance;
-  sample.density = probability * sample.cosine / seen.interval.width;
+  sample.density = probability * sample.cosine / seen.range.width;
   return sample;
 }
 
-std::optional<EmitterSample> EmitterSampler::View::SampleArc(std::size_t index, double probability, double u) const {
+std::optional<EmitterSample> EmitterSampler::View::SampleLength(std::size_t index, double probability, double u) const {
   const Piece& piece = sampler_.pieces_[index];
   EmitterSample sample;
   sample.point = {ArcPoint(piece.element, u), piece.id};
@@ -169,14 +149,14 @@ double EmitterSampler::View::Density(const Hit& hit, Vector2 direction, double c
   if (index == kNotAPiece || total_ == 0) return 0;
   const Piece& piece = sampler_.pieces_[index];
   const Seen seen = sampler_.weighs() ? seen_[index] : See(index);
-  if (seen.interval.empty()) return 0;
+  if (seen.weight == 0) return 0;
   const double begin = index == 0 ? 0 : sampler_.pieces_[index - 1].power_end;
   const double probability = (sampler_.weighs() ? seen.weight : piece.power_end - begin) / total_;
-  if (piece.shape == Shape::kArc) {
+  if (seen.range.kind == EmitterRange::Kind::kLength) {
     const double emitter_cosine = std::abs(Dot(hit.normal, direction));
     return probability * hit.distance / (emitter_cosine * piece.element.length);
   }
-  return probability * cosine / seen.interval.width;
+  return probability * cosine / seen.range.width;
 }
 
 }  // namespace flatlight

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/plane/path_tracing/sine_interval.h"
+#include "core/plane/path_tracing/emitter_range.h"
 #include "core/plane/path_tracing/vertex.h"
 #include "core/scene/scene.h"
 
@@ -60,11 +60,11 @@ class EmitterSampler {
 
    private:
     struct Seen {
-      SineInterval interval;
-      double weight = 0;
+      EmitterRange range;
+      double weight = 0;  // 0 if the range is empty.
     };
     Seen See(std::size_t piece) const;
-    std::optional<EmitterSample> SampleArc(std::size_t piece, double probability, double u) const;
+    std::optional<EmitterSample> SampleLength(std::size_t piece, double probability, double u) const;
 
     const EmitterSampler& sampler_;
     const Vertex& vertex_;
@@ -74,11 +74,9 @@ class EmitterSampler {
   };
 
  private:
-  enum class Shape : std::uint8_t { kSegment, kCircle, kArc };
   struct Piece {
     ElementId id = ElementId::kNone;
     Element element;
-    Shape shape = Shape::kSegment;
     EmittingSides sides = EmittingSides::kFront;
     Spectrum radiance;
     double brightness = 0;  // Largest channel.

@@ -10,8 +10,8 @@ namespace flatlight {
 namespace {
 
 // Paths lighter than the first play roulette; survivors get the second weight. Above a quarter the first reflections in
-// rooms of ordinary brightness stay free of roulette's noise; with weights kept below a half, a path goes on for no longer
-// than its share of the light is worth.
+// rooms of ordinary brightness stay free of roulette's noise; with weights kept below a half, a path goes on for no
+// longer than its share of the light is worth.
 constexpr double kRouletteBelow = 0.25;
 constexpr double kSurvivorWeight = 0.5;
 

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/transport/scene_maker.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+namespace flatlight {
+
+void SceneMaker::AddCurve(CurveDescription curve, const Look& look) {
+  curve.material = curve.name + " material";
+  description_.materials.push_back({curve.material, LambertianDescription{look.reflectance}});
+  if (!look.radiance.empty()) curve.emission = EmissionDescription{look.radiance, look.two_sided};
+  description_.curves.push_back(std::move(curve));
+}
+
+SceneMaker& SceneMaker::Segment(const std::string& name, Point2 a, Point2 b, const Look& look) {
+  CurveDescription curve;
+  curve.name = name;
+  curve.shape = SegmentDescription{a, b};
+  AddCurve(std::move(curve), look);
+  return *this;
+}
+
+SceneMaker& SceneMaker::Polyline(const std::string& name, std::vector<Point2> points, bool closed, const Look& look) {
+  CurveDescription curve;
+  curve.name = name;
+  curve.shape = PolylineDescription{std::move(points), closed};
+  AddCurve(std::move(curve), look);
+  return *this;
+}
+
+SceneMaker& SceneMaker::Arc(const std::string& name, const ArcDescription& arc, const Look& look) {
+  CurveDescription curve;
+  curve.name = name;
+  curve.shape = arc;
+  AddCurve(std::move(curve), look);
+  return *this;
+}
+
+SceneMaker& SceneMaker::Probe(const std::string& curve, std::uint32_t count, Side side) {
+  ProbeDescription probe;
+  probe.name = "probe " + std::to_string(description_.probes.size());
+  probe.curve = curve;
+  probe.count = count;
+  probe.side = side;
+  description_.probes.push_back(std::move(probe));
+  return *this;
+}
+
+SceneMaker& SceneMaker::PointProbe(Point2 position, Vector2 normal) {
+  ProbeDescription probe;
+  probe.name = "probe " + std::to_string(description_.probes.size());
+  probe.points = {{position, normal}};
+  description_.probes.push_back(std::move(probe));
+  return *this;
+}
+
+std::shared_ptr<const Scene> SceneMaker::Build() const {
+  SceneDescription description = description_;
+  if (description.name.empty()) description.name = "test";
+  Diagnostics diagnostics;
+  std::shared_ptr<const Scene> scene = BuildScene(description, diagnostics);
+  for (const Diagnostic& diagnostic : diagnostics.kept()) {
+    std::fprintf(stderr, "test scene: %s: %s\n", diagnostic.path.c_str(), diagnostic.message.c_str());
+  }
+  if (scene == nullptr) std::abort();
+  return scene;
+}
+
+SceneMaker SquareRoom(const SceneMaker::Look& look, std::uint32_t points_per_wall) {
+  SceneMaker maker;
+  maker.Segment("floor", {-1, -1}, {1, -1}, look);
+  maker.Segment("right", {1, -1}, {1, 1}, look);
+  maker.Segment("ceiling", {1, 1}, {-1, 1}, look);
+  maker.Segment("left", {-1, 1}, {-1, -1}, look);
+  for (const char* wall : {"floor", "right", "ceiling", "left"}) maker.Probe(wall, points_per_wall);
+  return maker;
+}
+
+SceneMaker UnitLight() {
+  SceneMaker maker;
+  maker.Segment("floor", {0, 0}, {1, 0});
+  maker.Segment("light", {1, 1}, {0, 1}, {.radiance = {1}});
+  return maker;
+}
+
+SceneMaker FurnishedRoom(bool grey, std::uint32_t points_per_wall) {
+  const auto color = [grey](double r, double g, double b) {
+    return grey ? SpectrumValues{r} : SpectrumValues{r, g, b};
+  };
+  SceneMaker maker;
+  maker.Segment("floor", {0, 0}, {4, 0}, {.reflectance = color(0.5, 0.5, 0.5)});
+  maker.Segment("right", {4, 0}, {4, 3}, {.reflectance = color(0.7, 0.2, 0.2)});
+  maker.Segment("ceiling", {4, 3}, {0, 3}, {.reflectance = color(0.8, 0.8, 0.8)});
+  maker.Segment("left", {0, 3}, {0, 0}, {.reflectance = color(0.2, 0.7, 0.3)});
+  maker.Segment("lamp", {2.5, 2.9}, {1.5, 2.9}, {.reflectance = {0.3}, .radiance = color(5, 4, 3)});
+  maker.Arc("bulb", {{0.7, 0.9}, 0.2, 0, -6.283185307179586}, {.reflectance = {0.1}, .radiance = color(1, 1, 2)});
+  maker.Arc("disc", {{2.8, 0.8}, 0.4, 0, -6.283185307179586}, {.reflectance = {0.6}});
+  maker.Segment("shelf", {1, 1.5}, {2, 1.6}, {.reflectance = {0.4}});
+  for (const char* wall : {"floor", "right", "disc", "shelf"}) maker.Probe(wall, points_per_wall);
+  return maker;
+}
+
+}  // namespace flatlight

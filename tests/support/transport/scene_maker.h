@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small scenes for tests of transport.
+#ifndef FLATLIGHT_TESTS_SUPPORT_TRANSPORT_SCENE_MAKER_H_
+#define FLATLIGHT_TESTS_SUPPORT_TRANSPORT_SCENE_MAKER_H_
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/math/vec.h"
+#include "core/scene/description.h"
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+// Collects curves and probes; Build stops the program if they make no valid scene. Each curve has a material of its
+// own.
+class SceneMaker {
+ public:
+  struct Look {
+    SpectrumValues reflectance = {0};
+    SpectrumValues radiance = {};  // Empty: does not emit.
+    bool two_sided = false;
+  };
+
+  // The front is on the left of a -> b.
+  SceneMaker& Segment(const std::string& name, Point2 a, Point2 b, const Look& look = {});
+  SceneMaker& Polyline(const std::string& name, std::vector<Point2> points, bool closed, const Look& look = {});
+  SceneMaker& Arc(const std::string& name, const ArcDescription& arc, const Look& look = {});
+  SceneMaker& Probe(const std::string& curve, std::uint32_t count, Side side = Side::kFront);
+  SceneMaker& PointProbe(Point2 position, Vector2 normal);
+
+  const SceneDescription& description() const { return description_; }
+  std::shared_ptr<const Scene> Build() const;
+
+ private:
+  void AddCurve(CurveDescription curve, const Look& look);
+
+  SceneDescription description_;
+};
+
+// A square room of side 2 around the origin, walls alike, their fronts inside; probes on all four walls.
+SceneMaker SquareRoom(const SceneMaker::Look& look, std::uint32_t points_per_wall);
+
+// A floor from (0,0) to (1,0), unit light of radiance 1 above it at height 1, facing down; black. (THEORY 16)
+SceneMaker UnitLight();
+
+// Rooms with everything in them: a box with coloured walls, two lamps, a disc and a blocker.
+SceneMaker FurnishedRoom(bool grey, std::uint32_t points_per_wall);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_TESTS_SUPPORT_TRANSPORT_SCENE_MAKER_H_
