@@ -67,6 +67,34 @@ Crossings CrossArc(const Element& arc, Point2 origin, Vector2 direction) {
   return crossings;
 }
 
+ElementCrossings CrossElements(const Element& e, const Element& f) {
+  ElementCrossings common;
+  if (e.kind == Element::Kind::kArc && f.kind == Element::Kind::kArc) {
+    const Vector2 between = f.center - e.center;
+    const double squared = LengthSquared(between);
+    if (squared == 0) return {};
+    // Where the circles' common chord meets the line of their centres, and half the chord.
+    const double along = 0.5 * (1 + (e.radius - f.radius) * (e.radius + f.radius) / squared);
+    const double half_squared = e.radius * e.radius / squared - along * along;
+    if (half_squared < 0) return {};
+    for (const double half : {-std::sqrt(half_squared), std::sqrt(half_squared)}) {
+      const Point2 point = e.center + along * between + half * Left(between);
+      if (OnArc(e, point - e.a) && OnArc(f, point - f.a)) common.point[common.count++] = point;
+    }
+    return common;
+  }
+  const Element& line = e.kind == Element::Kind::kSegment ? e : f;
+  const Element& other = e.kind == Element::Kind::kSegment ? f : e;
+  const Vector2 direction = line.b - line.a;
+  const Crossings crossings = other.kind == Element::Kind::kSegment ? CrossSegment(other, line.a, direction)
+                                                                    : CrossArc(other, line.a, direction);
+  for (int i = 0; i < crossings.count; ++i) {
+    const double t = crossings.t[i];
+    if (t >= 0 && t <= 1) common.point[common.count++] = line.a + t * direction;
+  }
+  return common;
+}
+
 Crossings CrossOwnCircle(const Element& arc, Point2 on_circle, Vector2 direction) {
   const Vector2 q = on_circle - arc.a;
   const double bend = 1 / arc.radius;

@@ -22,6 +22,13 @@ Crossings CrossArc(const Element& arc, Point2 origin, Vector2 direction);
 // For an origin on the arc's own circle: the one other crossing of the circle, if the arc is there.
 Crossings CrossOwnCircle(const Element& arc, Point2 on_circle, Vector2 direction);
 
+// The points that two elements have in common, overlaps aside.
+struct ElementCrossings {
+  int count = 0;
+  Point2 point[2];
+};
+ElementCrossings CrossElements(const Element& e, const Element& f);
+
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_CORE_PLANE_INTERSECT_H_

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Direct irradiance with occlusion and its derivatives, in closed form.
+//
+// In the plane the irradiance from a piece of constant radiance L seen between the directions theta_a and theta_b is
+// L (sin theta_b - sin theta_a), whatever its shape; so E and its derivatives are sums over the visible pieces' end
+// directions. Jarosz et al. 2012, "Theory, Analysis and Applications of 2D Global Illumination"; curved receivers and
+// silhouettes of arcs are derived here (see Derive in edge.h).
+#ifndef FLATLIGHT_CORE_PLANE_EXACT_EXACT_H_
+#define FLATLIGHT_CORE_PLANE_EXACT_EXACT_H_
+
+#include <vector>
+
+#include "core/plane/bvh.h"
+#include "core/plane/exact/gather.h"
+#include "core/plane/exact/sweep.h"
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+// Normalised units: radiance; radiance per length; radiance per length squared. Derivatives are per arc length along
+// the receiver's tangent, its curvature included; at a visibility event toward increasing arc length.
+struct ExactValue {
+  Spectrum irradiance;
+  Spectrum gradient;
+  Spectrum hessian;
+  // Bounds on the distance from the truth: rounding of coordinates and of the sums.
+  Spectrum irradiance_error;
+  Spectrum gradient_error;
+  Spectrum hessian_error;
+};
+
+struct ExactOptions {
+  int derivatives = 2;    // 0: irradiance alone; 1: and the gradient; 2: and the Hessian.
+  bool occlusion = true;  // False where nothing can stand between an emitter and a receiver: the search is left out.
+  int channels = kMaxChannels;  // The first ones are computed, the others get the first one's values.
+};
+
+// Holds working memory: one for each thread.
+class ExactSolver {
+ public:
+  ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions options);
+
+  ExactValue Evaluate(const Receiver& receiver);
+
+  // Boxes and elements looked at so far.
+  double tests() const { return gatherer_.tests(); }
+
+ private:
+  void AddIntervals(const std::vector<VisibleInterval>& intervals, const std::vector<Part>& parts,
+                    const Receiver& receiver, ExactValue& value) const;
+
+  const Scene& scene_;
+  ExactOptions options_;
+  Gatherer gatherer_;
+  Sweep sweep_;
+  std::vector<ElementId> emitters_;
+  std::vector<Part> single_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_PLANE_EXACT_EXACT_H_

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/plane/exact/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/math/tolerances.h"
+#include "core/plane/intersect.h"
+
+namespace flatlight {
+namespace {
+
+// Two distances that differ by less are equal: curves that touch.
+bool Nearer(double r1, double r2, double coordinate_error) { return r1 < r2 - 1e-12 * r2 - 8 * coordinate_error; }
+
+struct UnitDirection {
+  double tangent, normal;
+  // Half way between two keys.
+  UnitDirection(double key_low, double key_high) {
+    const double key = 0.5 * (key_low + key_high);
+    const double n = 1 - std::abs(key);
+    const double length = std::sqrt(key * key + n * n);
+    tangent = key / length, normal = n / length;
+  }
+};
+
+constexpr int kMaxDepth = 40;
+
+}  // namespace
+
+const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, const Receiver& receiver) {
+  parts_ = &parts;
+  receiver_ = &receiver;
+  left_handed_ = Cross(receiver.tangent, receiver.normal) < 0;
+  visible_.clear();
+  active_.clear();
+  breaks_.clear();
+  for (std::uint32_t p = 0; p < parts.size(); ++p) {
+    for (const Edge* edge : {&parts[p].first, &parts[p].last}) {
+      const double uncertain =
+          edge->kind == Edge::Kind::kHorizon ? 0 : 2 * scene_.coordinate_error() * edge->q + 4 * kUnitRoundoff;
+      breaks_.push_back({edge, p, uncertain});
+    }
+  }
+  SortBreaks(receiver.curvature);
+  first_rank_.resize(parts.size());
+  last_rank_.resize(parts.size());
+  for (std::uint32_t i = 0; i < breaks_.size(); ++i) {
+    const std::uint32_t p = breaks_[i].part;
+    (breaks_[i].edge == &parts[p].first ? first_rank_ : last_rank_)[p] = i;
+  }
+  for (std::uint32_t i = 0; i + 1 < breaks_.size(); ++i) {
+    const std::uint32_t p = breaks_[i].part;
+    if (i == std::min(first_rank_[p], last_rank_[p])) {
+      active_.push_back(p);
+    } else {
+      active_.erase(std::find(active_.begin(), active_.end(), p));
+    }
+    const Break& here = breaks_[i];
+    const Break& next = breaks_[i + 1];
+    if (active_.empty()) {
+      Emit(*here.edge, VisibleInterval::kNothing);
+    } else if (active_.size() == 1) {
+      Emit(*here.edge, static_cast<std::int32_t>(active_[0]));
+    } else if (next.edge->key - here.edge->key <= here.uncertain + next.uncertain) {
+      const UnitDirection middle(here.edge->key, next.edge->key);
+      Emit(*here.edge, Nearest(middle.tangent, middle.normal, true));
+    } else {
+      FindArcCrossings(here.edge->key, next.edge->key);
+      Edge from = *here.edge;
+      for (const Edge& to : arc_crossings_) {
+        Resolve(from, to, 0);
+        from = to;
+      }
+      Resolve(from, *next.edge, 0);
+    }
+  }
+  if (!breaks_.empty()) Emit(*breaks_.back().edge, VisibleInterval::kNothing);
+  return visible_;
+}
+
+void Sweep::SortBreaks(double curvature) {
+  std::sort(breaks_.begin(), breaks_.end(), [](const Break& l, const Break& r) { return l.edge->key < r.edge->key; });
+  for (std::size_t begin = 0; begin < breaks_.size();) {
+    std::size_t end = begin + 1;
+    while (end < breaks_.size() &&
+           breaks_[end].edge->key - breaks_[end - 1].edge->key <= breaks_[end].uncertain + breaks_[end - 1].uncertain) {
+      ++end;
+    }
+    if (end - begin > 1) {
+      const auto at = [&](std::size_t i) { return breaks_.begin() + static_cast<std::ptrdiff_t>(i); };
+      // theta' = kappa - c q: the nearest falls back most.
+      std::stable_sort(at(begin), at(end), [](const Break& l, const Break& r) { return l.edge->q > r.edge->q; });
+      // Equal distances: by the next derivative.
+      for (std::size_t i = begin; i < end;) {
+        std::size_t j = i + 1;
+        while (j < end && breaks_[j].edge->q >= breaks_[i].edge->q * (1 - 1e-9)) ++j;
+        std::stable_sort(at(i), at(j), [&](const Break& l, const Break& r) {
+          return Derive(*l.edge, curvature).theta_second < Derive(*r.edge, curvature).theta_second;
+        });
+        i = j;
+      }
+    }
+    begin = end;
+  }
+}
+
+double Sweep::DistanceOf(std::uint32_t part, double tangent, double normal) const {
+  const Part& p = (*parts_)[part];
+  return DistanceAlong(scene_.element(p.element), p, *receiver_, tangent, normal);
+}
+
+std::int32_t Sweep::Nearest(double tangent, double normal, bool edge_on) const {
+  std::int32_t nearest = VisibleInterval::kNothing;
+  double best = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t p : active_) {
+    const Part& part = (*parts_)[p];
+    double distance;
+    if (edge_on && part.first.kind != Edge::Kind::kHorizon && part.last.kind != Edge::Kind::kHorizon &&
+        std::abs(part.first.key - part.last.key) <=
+            4 * kUnitRoundoff + 2 * scene_.coordinate_error() * (part.first.q + part.last.q)) {
+      distance = 0.5 * (part.first.Distance() + part.last.Distance());
+    } else {
+      distance = DistanceOf(p, tangent, normal);
+    }
+    if (distance < best) best = distance, nearest = static_cast<std::int32_t>(p);
+  }
+  return nearest;
+}
+
+void Sweep::Resolve(const Edge& from, const Edge& to, int depth) {
+  const UnitDirection middle(from.key, to.key);
+  const std::int32_t nearest = Nearest(middle.tangent, middle.normal, false);
+  if (active_.size() > 1 && depth < kMaxDepth) {
+    // Straight parts cross once at most: another one is in front somewhere only if it is at an end.
+    for (const double key : {from.key, to.key}) {
+      const UnitDirection end(key, key);
+      const double limit = DistanceOf(static_cast<std::uint32_t>(nearest), end.tangent, end.normal);
+      std::int32_t front = nearest;
+      double best = limit;
+      for (const std::uint32_t p : active_) {
+        const double distance = DistanceOf(p, end.tangent, end.normal);
+        if (Nearer(distance, best, scene_.coordinate_error())) best = distance, front = static_cast<std::int32_t>(p);
+      }
+      if (front == nearest) continue;
+      crossings_.clear();
+      AddCrossings(static_cast<std::uint32_t>(nearest), static_cast<std::uint32_t>(front), from.key, to.key,
+                   crossings_);
+      if (crossings_.empty()) continue;
+      const Edge crossing = crossings_.front();
+      Resolve(from, crossing, depth + 1);
+      Resolve(crossing, to, depth + 1);
+      return;
+    }
+  }
+  Emit(from, nearest);
+}
+
+void Sweep::FindArcCrossings(double low, double high) {
+  arc_crossings_.clear();
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    for (std::size_t j = i + 1; j < active_.size(); ++j) {
+      if ((*parts_)[active_[i]].kind == Part::Kind::kStraight && (*parts_)[active_[j]].kind == Part::Kind::kStraight)
+        continue;
+      AddCrossings(active_[i], active_[j], low, high, arc_crossings_);
+    }
+  }
+  std::sort(arc_crossings_.begin(), arc_crossings_.end(), [](const Edge& l, const Edge& r) { return l.key < r.key; });
+}
+
+void Sweep::AddCrossings(std::uint32_t first, std::uint32_t second, double low, double high,
+                         std::vector<Edge>& crossings) const {
+  const Element& e = scene_.element((*parts_)[first].element);
+  const Element& f = scene_.element((*parts_)[second].element);
+  if (e.carrier == f.carrier) return;
+  const ElementCrossings points = CrossElements(e, f);
+  for (int i = 0; i < points.count; ++i) {
+    const Edge edge = VertexEdge(*receiver_, points.point[i]);
+    const double uncertain = 2 * scene_.coordinate_error() * edge.q + 4 * kUnitRoundoff;
+    if (edge.normal > 0 && edge.key > low + uncertain && edge.key < high - uncertain) crossings.push_back(edge);
+  }
+}
+
+void Sweep::Emit(const Edge& from, std::int32_t part) {
+  VisibleInterval interval;
+  interval.begin = from;
+  interval.part = part;
+  if (part != VisibleInterval::kNothing) {
+    // An element that runs counter-clockwise around the receiver has it on its left; theta runs clockwise.
+    const auto p = static_cast<std::size_t>(part);
+    const bool counter_clockwise = (last_rank_[p] < first_rank_[p]) != left_handed_;
+    interval.side = counter_clockwise ? Side::kFront : Side::kBack;
+  }
+  visible_.push_back(interval);
+}
+
+}  // namespace flatlight
