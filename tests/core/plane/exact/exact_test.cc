@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/plane/exact/exact.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "core/scene/scene.h"
+#include "oracle.h"
+
+namespace flatlight {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+SceneDescription EmptyScene() {
+  SceneDescription scene;
+  scene.materials.push_back({"black", LambertianDescription{{0}}});
+  return scene;
+}
+
+template <typename Shape>
+void AddCurve(SceneDescription& scene, Shape shape, double radiance = 0, bool two_sided = false) {
+  CurveDescription curve;
+  curve.name = "c" + std::to_string(scene.curves.size());
+  curve.shape = shape;
+  curve.material = "black";
+  if (radiance > 0) curve.emission = EmissionDescription{{radiance}, two_sided};
+  scene.curves.push_back(curve);
+}
+
+void AddProbe(SceneDescription& scene, std::size_t curve, std::uint32_t count, Side side = Side::kFront) {
+  ProbeDescription probe;
+  probe.name = "p" + std::to_string(scene.probes.size());
+  probe.curve = "c" + std::to_string(curve);
+  probe.count = count;
+  probe.side = side;
+  scene.probes.push_back(probe);
+}
+
+std::shared_ptr<const Scene> Build(const SceneDescription& description) {
+  Diagnostics diagnostics;
+  auto scene = BuildScene(description, diagnostics);
+  for (const Diagnostic& d : diagnostics.kept()) ADD_FAILURE() << d.path << ": " << d.message;
+  return scene;
+}
+
+// First channel, world units.
+struct WorldValue {
+  double irradiance, gradient, hessian, irradiance_error, gradient_error, hessian_error;
+};
+
+std::vector<WorldValue> Solve(const Scene& scene, std::size_t probe) {
+  const Bvh bvh(scene.elements());
+  ExactSolver solver(scene, bvh, {});
+  std::vector<WorldValue> values;
+  const double l = scene.frame().radiance_scale, k = scene.frame().scale;
+  for (const Receiver& receiver : scene.probes()[probe].receivers) {
+    const ExactValue v = solver.Evaluate(receiver);
+    values.push_back({v.irradiance[0] * l, v.gradient[0] * l / k, v.hessian[0] * l / k / k, v.irradiance_error[0] * l,
+                      v.gradient_error[0] * l / k, v.hessian_error[0] * l / k / k});
+  }
+  return values;
+}
+
+// Compares every point of every probe of the scene with the oracle.
+struct Agreement {
+  int compared = 0;
+  int skipped = 0;
+};
+
+void Compare(const SceneDescription& description, Agreement& agreement, const std::string& what) {
+  const auto scene = Build(description);
+  ASSERT_TRUE(scene);
+  const Oracle oracle(description);
+  const double extent = scene->frame().scale;
+  for (std::size_t p = 0; p < description.probes.size(); ++p) {
+    const ProbeDescription& probe = description.probes[p];
+    const std::vector<WorldValue> values = Solve(*scene, p);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      std::optional<OracleValue> truth;
+      if (probe.curve) {
+        truth = oracle.OnCurve(std::stoul(probe.curve->substr(1)), (static_cast<double>(i) + 0.5) / *probe.count,
+                               *probe.side);
+      } else {
+        truth = oracle.AtPoint(probe.points[i].position, probe.points[i].normal);
+      }
+      if (!truth) {
+        ++agreement.skipped;
+        continue;
+      }
+      ++agreement.compared;
+      const WorldValue& v = values[i];
+      const std::string where = what + ", probe " + std::to_string(p) + ", point " + std::to_string(i);
+      // The differences' own error: see the oracle's agreement limits.
+      EXPECT_LE(std::abs(v.irradiance - truth->irradiance), v.irradiance_error + 1e-15 * truth->size) << where;
+      EXPECT_LE(std::abs(v.gradient - truth->gradient),
+                v.gradient_error + 1e-13 * (truth->size / extent + std::abs(truth->gradient)))
+          << where << " gradient " << v.gradient << " truth " << truth->gradient;
+      EXPECT_LE(std::abs(v.hessian - truth->hessian),
+                v.hessian_error + 1e-10 * (truth->size / extent / extent + std::abs(truth->hessian)))
+          << where << " hessian " << v.hessian << " truth " << truth->hessian;
+    }
+  }
+}
+
+TEST(ExactTest, UnitLight) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, SegmentDescription{{0, 0}, {1, 0}});
+  AddCurve(scene, SegmentDescription{{1, 1}, {0, 1}}, 2);
+  AddProbe(scene, 0, 10);
+  const auto values = Solve(*Build(scene), 0);
+  for (int i = 0; i < 10; ++i) {
+    const double x = (i + 0.5) / 10;
+    EXPECT_NEAR(values[static_cast<std::size_t>(i)].irradiance,
+                2 * ((1 - x) / std::hypot(1 - x, 1) + x / std::hypot(x, 1)), 4e-15);
+  }
+}
+
+TEST(ExactTest, BlockerOfThePaper) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, SegmentDescription{{0, 0}, {1, 0}});
+  AddCurve(scene, SegmentDescription{{1, 1}, {0, 1}}, 1);
+  AddCurve(scene, SegmentDescription{{0.5, 0.5}, {1.2, 0.5}});
+  ProbeDescription probe;
+  probe.name = "p";
+  probe.points.push_back({{0.3, 0}, {0, 1}});
+  scene.probes.push_back(probe);
+  const auto value = Solve(*Build(scene), 0)[0];
+  EXPECT_NEAR(value.irradiance, 0.6587, 5e-5);
+  EXPECT_NEAR(value.gradient, -0.7221, 5e-5);
+  EXPECT_NEAR(value.hessian, -4.0376, 5e-5);
+  EXPECT_LT(value.irradiance_error, 1e-14);
+  EXPECT_LT(value.hessian_error, 1e-12);
+}
+
+TEST(ExactTest, FullDiscFollowsOneOverDistance) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, SegmentDescription{{-1, 0}, {1, 0}});
+  AddCurve(scene, ArcDescription{{0.25, 2}, 0.5, 0.3, -2 * kPi}, 3);  // Clockwise: it shines outward.
+  AddProbe(scene, 0, 7);
+  const auto values = Solve(*Build(scene), 0);
+  for (std::size_t i = 0; i < 7; ++i) {
+    const double x = -1 + (static_cast<double>(i) + 0.5) / 7 * 2;
+    const double distance = std::hypot(0.25 - x, 2);
+    EXPECT_NEAR(values[i].irradiance, 2 * 3 * (2 / distance) * 0.5 / distance, 1e-14);
+  }
+}
+
+TEST(ExactTest, InsideAnEmittingCircleEveryPointGetsTwiceTheRadiance) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, ArcDescription{{5, -3}, 2, 1, 2 * kPi}, 1.5);
+  AddProbe(scene, 0, 50);
+  for (const WorldValue& value : Solve(*Build(scene), 0)) {
+    EXPECT_NEAR(value.irradiance, 3, 1e-14);
+    EXPECT_NEAR(value.gradient, 0, 1e-13);
+    EXPECT_NEAR(value.hessian, 0, 1e-13);
+  }
+}
+
+TEST(ExactTest, BackProbeAndTurnedFreePointAgreeUpToTheTangent) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, SegmentDescription{{0, 0}, {1, 0}});
+  AddCurve(scene, SegmentDescription{{0.2, -1}, {0.9, -1.5}}, 1);
+  AddProbe(scene, 0, 1, Side::kBack);
+  ProbeDescription free;
+  free.name = "free";
+  free.points.push_back({{0.5, 0}, {0, -1}});
+  scene.probes.push_back(free);
+  const auto built = Build(scene);
+  const auto back = Solve(*built, 0)[0], turned = Solve(*built, 1)[0];
+  EXPECT_GT(back.irradiance, 0.1);
+  EXPECT_DOUBLE_EQ(back.irradiance, turned.irradiance);
+  EXPECT_NEAR(back.gradient, -turned.gradient, 1e-14);
+  EXPECT_NEAR(back.hessian, turned.hessian, 1e-13);
+}
+
+// A wall seen edge-on: exactly above the receiver. Toward increasing arc length its right face comes into view.
+TEST(ExactTest, DerivativesAtAnEventAreThoseBeyondIt) {
+  for (const double radiance : {0.0, 1.0}) {
+    SceneDescription scene = EmptyScene();
+    AddCurve(scene, SegmentDescription{{0, 0}, {1, 0}});
+    AddCurve(scene, SegmentDescription{{0.5, 0.6}, {0.5, 0.3}}, radiance);  // Front to the right of it (+x).
+    AddCurve(scene, SegmentDescription{{0.9, 1}, {0.1, 1}}, 0.7);
+    const auto at = [&](double x) {
+      ProbeDescription probe;
+      probe.name = "p";
+      probe.points.push_back({{x, 0}, {0, 1}});
+      scene.probes.assign(1, probe);
+      return Solve(*Build(scene), 0)[0];
+    };
+    const double step = 1e-6;
+    const WorldValue here = at(0.5), beyond = at(0.5 + step), before = at(0.5 - step);
+    EXPECT_NEAR(here.gradient, beyond.gradient - step * beyond.hessian, 1e-9);
+    EXPECT_NEAR(here.hessian, beyond.hessian, 1e-3);
+    EXPECT_GT(std::abs(here.gradient - before.gradient), 0.5);
+  }
+}
+
+double Uniform(std::mt19937_64& random, double low, double high) {
+  return low + (high - low) * (static_cast<double>(random() >> 11) * 0x1p-53);
+}
+
+Point2 RandomPoint(std::mt19937_64& random) { return {Uniform(random, -1, 1), Uniform(random, -1, 1)}; }
+
+void AddRandomCurve(SceneDescription& scene, std::mt19937_64& random, bool arcs) {
+  const double radiance = random() % 2 == 0 ? Uniform(random, 0.5, 2) : 0;
+  const bool two_sided = random() % 3 == 0;
+  if (arcs && random() % 2 == 0) {
+    const double sweep = (random() % 2 == 0 ? 1 : -1) * (random() % 4 == 0 ? 2 * kPi : Uniform(random, 0.2, 6.2));
+    AddCurve(scene, ArcDescription{RandomPoint(random), Uniform(random, 0.05, 0.7), Uniform(random, -7, 7), sweep},
+             radiance, two_sided);
+  } else {
+    const Point2 a = RandomPoint(random);
+    const double length = random() % 2 == 0 ? 0.3 : 1.5;
+    AddCurve(scene, SegmentDescription{a, a + length * Vector2{Uniform(random, -1, 1), Uniform(random, -1, 1)}},
+             radiance, two_sided);
+  }
+}
+
+// Curves may cross, be receivers, emitters and occluders at once.
+TEST(ExactTest, RandomScenesAgreeWithTheOracle) {
+  Agreement agreement;
+  std::mt19937_64 random(7);
+  for (int round = 0; round < 160; ++round) {
+    SceneDescription scene = EmptyScene();
+    const std::size_t curves = 2 + random() % 6;
+    for (std::size_t i = 0; i < curves; ++i) AddRandomCurve(scene, random, round % 4 != 0);
+    for (std::size_t i = 0; i < std::min<std::size_t>(curves, 3); ++i) {
+      AddProbe(scene, i, 3, Side::kFront);
+      AddProbe(scene, i, 2, Side::kBack);
+    }
+    ProbeDescription free;
+    free.name = "free";
+    for (int i = 0; i < 3; ++i)
+      free.points.push_back({RandomPoint(random), {Uniform(random, -1, 1), Uniform(random, -1, 1)}});
+    scene.probes.push_back(free);
+    Compare(scene, agreement, "round " + std::to_string(round));
+  }
+  EXPECT_GT(agreement.compared, 2000);
+  EXPECT_LT(agreement.skipped, agreement.compared / 100);
+}
+
+}  // namespace
+}  // namespace flatlight
