@@ -43,7 +43,7 @@ class JsonMessageReader {
                     std::vector<UnusableNumber> unusable, Diagnostics& diagnostics);
 
   const std::optional<JsonSyntaxError>& syntax_error() const { return syntax_error_; }
-  // Of the value that is being read; empty at the top.
+  // Of the value that was read last, or is being read; empty at the top.
   std::string Path() const;
 
   // The parser's events. The names are the parser's.

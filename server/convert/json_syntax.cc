@@ -136,9 +136,9 @@ std::string Explain(std::string_view text, std::size_t at, const JsonSyntaxError
 
 }  // namespace
 
-Diagnostic DescribeSyntaxError(std::string_view text, const JsonSyntaxError& error, const std::string& within) {
+Diagnostic DescribeSyntaxError(std::string_view text, const JsonSyntaxError& error, const std::string& near) {
   const std::size_t at = TokenStart(text, error);
-  return {LineAndColumn(text, at), Explain(text, at, error) + (within.empty() ? "" : " (in " + within + ')')};
+  return {LineAndColumn(text, at), Explain(text, at, error) + (near.empty() ? "" : " (near " + near + ')')};
 }
 
 Diagnostic DescribeNul(std::string_view text) {

@@ -12,9 +12,9 @@
 
 namespace flatlight {
 
-// The path is "line L, column C", both counted from 1, the column in characters. `within`: the path of the value that
-// was being read.
-Diagnostic DescribeSyntaxError(std::string_view text, const JsonSyntaxError& error, const std::string& within);
+// The path is "line L, column C", both counted from 1, the column in characters. `near`: the path of the value
+// that was read last, or is being read; empty if there is none.
+Diagnostic DescribeSyntaxError(std::string_view text, const JsonSyntaxError& error, const std::string& near);
 
 // The same for a text that is whole but for the NUL at its end.
 Diagnostic DescribeNul(std::string_view text);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 namespace flatlight {
@@ -51,9 +52,62 @@ std::vector<std::string> Tokens(const std::string& text) {
   return tokens;
 }
 
+using Json = nlohmann::ordered_json;
+
+// Every value below `json`. The texts are small and flat.
+void CollectValues(Json& json, std::vector<Json*>& values) {
+  for (Json& child : json) {
+    values.push_back(&child);
+    if (child.is_structured()) CollectValues(child, values);
+  }
+}
+
+constexpr std::array kNumbers = {0.0,    -0.0,  1.0,    -1.0,      0.5,         1e-320,      5e-324,
+                                 1e-100, 1e100, 1e101,  -1e100,    1e308,       1e15,        256.0,
+                                 1.5,    3.0,   0.3,    0.9999999, 4294967295., 4294967296., 6.28318,
+                                 6.3,    -6.28, 3.1416, 1e-15,     2.0,         1e6,         0x1.0p-1000};
+
+constexpr std::array kNames = {"floor",   "lamp",     "white",  "black", "light",    "arc",
+                               "segment", "polyline", "points", "x",     "count",    "BACK",
+                               "",        "\u0000",   "curve",  "a",     "emission", "twoSided"};
+
+void ChangeOne(Json& root, std::mt19937_64& random) {
+  std::vector<Json*> values;
+  CollectValues(root, values);
+  if (values.empty()) return;
+  Json& value = *values[Below(values.size(), random)];
+  const std::size_t kind = Below(8, random);
+  if (kind < 3) {
+    std::vector<Json*> numbers;
+    std::copy_if(values.begin(), values.end(), std::back_inserter(numbers),
+                 [](const Json* v) { return v->is_number(); });
+    if (!numbers.empty()) *numbers[Below(numbers.size(), random)] = kNumbers[Below(kNumbers.size(), random)];
+  } else if (kind == 3) {
+    const Json other = *values[Below(values.size(), random)];
+    value = other;
+  } else if (kind == 4) {
+    value = kNames[Below(kNames.size(), random)];
+  } else if (value.is_array() && !value.empty()) {
+    const std::size_t index = Below(value.size(), random);
+    if (kind == 5) {
+      value.erase(index);
+    } else {
+      const Json copy = value[index];
+      value.push_back(copy);
+    }
+  } else if (value.is_object() && !value.empty()) {
+    auto member = value.begin();
+    std::advance(member, static_cast<std::ptrdiff_t>(Below(value.size(), random)));
+    const Json copy = *member;
+    const bool renames = kind == 6;
+    value.erase(member);
+    if (renames) value[kNames[Below(kNames.size(), random)]] = copy;
+  }
+}
+
 }  // namespace
 
-std::string Mutated(const std::string& text, std::mt19937_64& random) {
+std::string WithChangedText(const std::string& text, std::mt19937_64& random) {
   if (text.empty()) return kTokens[Below(kTokens.size(), random)];
   std::string result = text;
   const std::size_t kind = Below(16, random);
@@ -88,6 +142,13 @@ std::string Mutated(const std::string& text, std::mt19937_64& random) {
   result.clear();
   for (const std::string& token : tokens) result += token;
   return result;
+}
+
+std::string WithChangedMeaning(const std::string& text, std::mt19937_64& random) {
+  Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (json.is_discarded()) return text;
+  ChangeOne(json, random);
+  return json.dump();
 }
 
 }  // namespace flatlight
