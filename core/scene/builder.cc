@@ -270,8 +270,6 @@ void SceneBuilder::AddPointProbe(const ProbeDescription& description, Probe& pro
 
 void SceneBuilder::Summarise() {
   Scene& scene = *scene_;
-  // Rounding of receivers and arcs comes on top of the shift's.
-  scene.coordinate_error_ += 2 * kUnitRoundoff;
   bool colours = false;
   for (const MaterialDescription& material : description_.materials)
     colours |= std::get<LambertianDescription>(material.kind).reflectance.size() == 3;
@@ -288,6 +286,8 @@ void SceneBuilder::Summarise() {
     traits.grey = traits.grey && curve.reflectance.IsGrey() && curve.radiance.IsGrey();
   }
   for (const Element& element : scene.elements_) traits.has_arcs |= element.kind == Element::Kind::kArc;
+  // Rounding of receivers, and of the points of arcs, comes on top of the shift's.
+  scene.coordinate_error_ += (traits.has_arcs ? 6 : 2) * kUnitRoundoff;
   for (const Probe& probe : scene.probes_) traits.probe_points += probe.receivers.size();
   scene.world_hash_ = HashWorld(description_);
   scene.probe_hash_ = HashProbes(description_);

@@ -16,14 +16,17 @@ bool Nearer(double r1, double r2, double coordinate_error) { return r1 < r2 - 1e
 
 struct UnitDirection {
   double tangent, normal;
-  // Half way between two keys.
-  UnitDirection(double key_low, double key_high) {
-    const double key = 0.5 * (key_low + key_high);
+  explicit UnitDirection(double key) {
     const double n = 1 - std::abs(key);
     const double length = std::sqrt(key * key + n * n);
     tangent = key / length, normal = n / length;
   }
 };
+
+// Distances that agree to this, relative, may be those of curves that meet; they are compared again so far aside (a
+// key).
+constexpr double kTie = 1e-11;
+constexpr double kAside = 1e-8;
 
 constexpr int kMaxDepth = 40;
 
@@ -64,8 +67,10 @@ const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, c
     } else if (active_.size() == 1) {
       Emit(*here.edge, static_cast<std::int32_t>(active_[0]));
     } else if (next.edge->key - here.edge->key <= here.uncertain + next.uncertain) {
-      const UnitDirection middle(here.edge->key, next.edge->key);
-      Emit(*here.edge, Nearest(middle.tangent, middle.normal, true));
+      // Coinciding edges come in the order of their distance, and a piece seen edge-on is as far away between two of
+      // them as they are.
+      const double edge_on = 0.5 * (here.edge->Distance() + next.edge->Distance());
+      Emit(*here.edge, Nearest(0.5 * (here.edge->key + next.edge->key), edge_on));
     } else {
       FindArcCrossings(here.edge->key, next.edge->key);
       Edge from = *here.edge;
@@ -78,6 +83,10 @@ const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, c
   }
   if (!breaks_.empty()) Emit(*breaks_.back().edge, VisibleInterval::kNothing);
   return visible_;
+}
+
+double Sweep::Uncertainty(const Edge& edge) const {
+  return edge.kind == Edge::Kind::kHorizon ? 0 : 2 * scene_.coordinate_error() * edge.q + 4 * kUnitRoundoff;
 }
 
 void Sweep::SortBreaks(double curvature) {
@@ -106,41 +115,52 @@ void Sweep::SortBreaks(double curvature) {
   }
 }
 
-double Sweep::DistanceOf(std::uint32_t part, double tangent, double normal) const {
+double Sweep::DistanceOf(std::uint32_t part, double key) const {
   const Part& p = (*parts_)[part];
-  return DistanceAlong(scene_.element(p.element), p, *receiver_, tangent, normal);
+  const UnitDirection direction(key);
+  return DistanceAlong(scene_.element(p.element), p, *receiver_, direction.tangent, direction.normal);
 }
 
-std::int32_t Sweep::Nearest(double tangent, double normal, bool edge_on) const {
+std::int32_t Sweep::Nearest(double key, std::optional<double> edge_on) const {
   std::int32_t nearest = VisibleInterval::kNothing;
   double best = std::numeric_limits<double>::infinity();
   for (const std::uint32_t p : active_) {
     const Part& part = (*parts_)[p];
-    double distance;
-    if (edge_on && part.first.kind != Edge::Kind::kHorizon && part.last.kind != Edge::Kind::kHorizon &&
-        std::abs(part.first.key - part.last.key) <=
-            4 * kUnitRoundoff + 2 * scene_.coordinate_error() * (part.first.q + part.last.q)) {
-      distance = 0.5 * (part.first.Distance() + part.last.Distance());
-    } else {
-      distance = DistanceOf(p, tangent, normal);
+    const bool is_edge_on =
+        edge_on && part.first.kind != Edge::Kind::kHorizon && part.last.kind != Edge::Kind::kHorizon &&
+        std::abs(part.first.key - part.last.key) <= Uncertainty(part.first) + Uncertainty(part.last);
+    const double distance = is_edge_on ? *edge_on : DistanceOf(p, key);
+    if (nearest == VisibleInterval::kNothing || distance < best * (1 - kTie) ||
+        (distance < best * (1 + kTie) && InFront(p, static_cast<std::uint32_t>(nearest), key, distance))) {
+      best = distance, nearest = static_cast<std::int32_t>(p);
     }
-    if (distance < best) best = distance, nearest = static_cast<std::int32_t>(p);
   }
   return nearest;
 }
 
+bool Sweep::InFront(std::uint32_t p, std::uint32_t other, double key, double distance) const {
+  // Parts that meet in this direction: the one that is nearer a little aside, on the side where both are.
+  const auto starts_here = [&](std::uint32_t index) {
+    const Part& part = (*parts_)[index];
+    const Edge& start = first_rank_[index] < last_rank_[index] ? part.first : part.last;
+    return start.kind != Edge::Kind::kHorizon && std::abs(start.key - key) < kAside &&
+           std::abs(start.Distance() - distance) < 1e3 * kAside * distance;
+  };
+  const double aside = starts_here(p) || starts_here(other) ? kAside : -kAside;
+  const double direction = std::clamp(key + aside, -1.0, 1.0);
+  const double r1 = DistanceOf(p, direction), r2 = DistanceOf(other, direction);
+  return r1 != r2 ? r1 < r2 : (*parts_)[p].element < (*parts_)[other].element;
+}
+
 void Sweep::Resolve(const Edge& from, const Edge& to, int depth) {
-  const UnitDirection middle(from.key, to.key);
-  const std::int32_t nearest = Nearest(middle.tangent, middle.normal, false);
+  const std::int32_t nearest = Nearest(0.5 * (from.key + to.key), std::nullopt);
   if (active_.size() > 1 && depth < kMaxDepth) {
     // Straight parts cross once at most: another one is in front somewhere only if it is at an end.
     for (const double key : {from.key, to.key}) {
-      const UnitDirection end(key, key);
-      const double limit = DistanceOf(static_cast<std::uint32_t>(nearest), end.tangent, end.normal);
       std::int32_t front = nearest;
-      double best = limit;
+      double best = DistanceOf(static_cast<std::uint32_t>(nearest), key);
       for (const std::uint32_t p : active_) {
-        const double distance = DistanceOf(p, end.tangent, end.normal);
+        const double distance = DistanceOf(p, key);
         if (Nearer(distance, best, scene_.coordinate_error())) best = distance, front = static_cast<std::int32_t>(p);
       }
       if (front == nearest) continue;
@@ -177,7 +197,7 @@ void Sweep::AddCrossings(std::uint32_t first, std::uint32_t second, double low, 
   const ElementCrossings points = CrossElements(e, f);
   for (int i = 0; i < points.count; ++i) {
     const Edge edge = VertexEdge(*receiver_, points.point[i]);
-    const double uncertain = 2 * scene_.coordinate_error() * edge.q + 4 * kUnitRoundoff;
+    const double uncertain = Uncertainty(edge);
     if (edge.normal > 0 && edge.key > low + uncertain && edge.key < high - uncertain) crossings.push_back(edge);
   }
 }

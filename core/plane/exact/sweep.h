@@ -3,6 +3,7 @@
 #define FLATLIGHT_CORE_PLANE_EXACT_SWEEP_H_
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/plane/exact/part.h"
@@ -39,8 +40,12 @@ class Sweep {
 
   void SortBreaks(double curvature);
   void Resolve(const Edge& from, const Edge& to, int depth);
-  std::int32_t Nearest(double tangent, double normal, bool edge_on) const;
-  double DistanceOf(std::uint32_t part, double tangent, double normal) const;
+  // Of the active parts, in the direction of a key. `edge_on`: the distance of parts that are seen edge-on.
+  std::int32_t Nearest(double key, std::optional<double> edge_on) const;
+  bool InFront(std::uint32_t p, std::uint32_t other, double key, double distance) const;
+  double DistanceOf(std::uint32_t part, double key) const;
+  // How far an edge's key may be off.
+  double Uncertainty(const Edge& edge) const;
   void Emit(const Edge& from, std::int32_t part);
   // Directions strictly between two edges where an active arc crosses another active part.
   void FindArcCrossings(double low, double high);

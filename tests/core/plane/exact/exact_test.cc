@@ -220,6 +220,53 @@ void AddRandomCurve(SceneDescription& scene, std::mt19937_64& random, bool arcs)
   }
 }
 
+// What is known one-sidedly: the value at a point is the limit of the values beyond it.
+void ExpectOneSided(const SceneDescription& description, const std::string& what) {
+  constexpr double kStep = 1e-7;
+  SceneDescription moved = description;
+  for (ProbeDescription& probe : moved.probes) {
+    for (ProbePointDescription& point : probe.points) point.position = point.position + kStep * Right(point.normal);
+  }
+  const auto here = Build(description), there = Build(moved);
+  for (std::size_t p = 0; p < description.probes.size(); ++p) {
+    const auto at = Solve(*here, p), beyond = Solve(*there, p);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const Point2 x = description.probes[p].points[i].position;
+      const std::string where = what + ", point " + std::to_string(x.x) + " " + std::to_string(x.y) + " normal " +
+                                std::to_string(description.probes[p].points[i].normal.x) + " " +
+                                std::to_string(description.probes[p].points[i].normal.y);
+      // Steps are 1/8 or more from every vertex that is not in line with the point: third derivatives stay below 1e5.
+      EXPECT_NEAR(at[i].irradiance, beyond[i].irradiance - kStep * beyond[i].gradient, 1e-11) << where;
+      EXPECT_NEAR(at[i].gradient, beyond[i].gradient - kStep * beyond[i].hessian, 1e-7) << where;
+      EXPECT_NEAR(at[i].hessian, beyond[i].hessian, 0.05) << where;
+    }
+  }
+}
+
+// Boxes and walls on a grid, seen from the grid: nearly every point lies on several events at once.
+TEST(ExactTest, GridScenesAreOneSidedAtEveryEvent) {
+  std::mt19937_64 random(3);
+  for (int round = 0; round < 300; ++round) {
+    SceneDescription scene = EmptyScene();
+    const auto grid = [&] { return static_cast<double>(random() % 17) / 8 - 1; };
+    // Above y = 0, in boxes that touch at sides and corners but do not overlap.
+    for (int box = 0; box < 5; ++box) {
+      const double x = static_cast<double>(box) * 0.375 - 1;
+      const double w = 0.125 * static_cast<double>(1 + random() % 3), y = 0.125 * static_cast<double>(1 + random() % 5),
+                   h = 0.125 * static_cast<double>(1 + random() % 3);
+      AddCurve(scene, PolylineDescription{{{x, y}, {x, y + h}, {x + w, y + h}, {x + w, y}}, true},
+               random() % 2 == 0 ? 1.0 : 0, true);
+    }
+    AddCurve(scene, SegmentDescription{{1, 1.5}, {-1, 1.5}}, 0.7);
+    ProbeDescription probe;
+    probe.name = "p";
+    for (int i = 0; i < 8; ++i) probe.points.push_back({{grid(), 0}, {0, 1}});
+    scene.probes.push_back(probe);
+    ExpectOneSided(scene, "round " + std::to_string(round));
+    if (HasFailure()) return;
+  }
+}
+
 // Curves may cross, be receivers, emitters and occluders at once.
 TEST(ExactTest, RandomScenesAgreeWithTheOracle) {
   Agreement agreement;
