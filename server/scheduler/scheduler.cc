@@ -158,8 +158,7 @@ void Scheduler::RunSlices() {
     if (run->stage != Run::Stage::kReady) continue;
     run->stage = Run::Stage::kSlicing;
     lock.unlock();
-    RunSlice(*run);
-    listener_(run->spec->id);
+    if (RunSlice(*run)) listener_(run->spec->id);
     lock.lock();
     if (run->stage == Run::Stage::kSlicing) {
       run->stage = Run::Stage::kReady;
@@ -169,7 +168,7 @@ void Scheduler::RunSlices() {
   }
 }
 
-void Scheduler::RunSlice(Run& run) {
+bool Scheduler::RunSlice(Run& run) {
   MeteredExecutor executor(executor_);
   const bool first = run.state.field == nullptr;
   JobState next = run.state;
@@ -212,8 +211,10 @@ void Scheduler::RunSlice(Run& run) {
     Publish(run);
   } else {
     run.state.cpu_seconds = next.cpu_seconds;
+    return false;
   }
   if (run.stage == Run::Stage::kEnded) finished = std::move(run.rendering);
+  return true;
 }
 
 void Scheduler::Publish(Run& run) {

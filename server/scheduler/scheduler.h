@@ -64,7 +64,8 @@ class Scheduler {
   void Prepare(const RunPtr& run);
   void RunSlices();
   RunPtr NextReady() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void RunSlice(Run& run);
+  // Returns whether it published a state.
+  bool RunSlice(Run& run);
   // Stores the run's state under the next sequence number; the listener must be told afterwards.
   void Publish(Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void End(Run& run, JobPhase phase) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);

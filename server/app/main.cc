@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// flatlightd: the server as a program.
+#include <sys/stat.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <variant>
+
+#include "core/execution/thread_pool.h"
+#include "server/app/options.h"
+#include "server/app/shutdown_signals.h"
+#include "server/app/token.h"
+#include "server/service/server.h"
+
+namespace flatlight {
+namespace {
+
+constexpr int kCannotServe = 1;
+constexpr int kBadUsage = 2;
+constexpr std::chrono::seconds kDrainGrace{3};
+
+int Fail(const absl::Status& why, int exit_status) {
+  std::fprintf(stderr, "flatlightd: %s\n", std::string(why.message()).c_str());
+  return exit_status;
+}
+
+int Run(const DaemonOptions& options) {
+  ServerOptions server_options;
+  server_options.address = options.listen;
+  server_options.threads = options.threads;
+  server_options.token = TakeTokenFromEnvironment();
+  if (!options.token_file.empty()) {
+    auto token = ReadTokenFile(options.token_file);
+    if (!token.ok()) return Fail(token.status(), kBadUsage);
+    server_options.token = *std::move(token);
+  }
+  const ShutdownSignals signals;
+  const auto server = Server::Start(server_options);
+  if (!server.ok()) {
+    return Fail(server.status(), absl::IsInvalidArgument(server.status()) ? kBadUsage : kCannotServe);
+  }
+  // Programs that start this one read the address from this line.
+  std::fprintf(stderr, "flatlightd %s listening on %s\n", BuildVersion().c_str(), (*server)->address().c_str());
+  signals.Await(options.exit_with_parent);
+  (*server)->Drain(kDrainGrace);
+  return 0;
+}
+
+}  // namespace
+}  // namespace flatlight
+
+int main(int argc, char** argv) {
+  // gRPC's own log lines would come between ours; its errors reach us as results.
+  setenv("GRPC_VERBOSITY", "NONE", 0);
+  umask(0077);  // A Unix socket is for its owner.
+  const auto options = flatlight::ParseDaemonOptions(argc, argv, flatlight::ThreadPool::AvailableProcessors(),
+                                                     flatlight::BuildVersion());
+  if (const int* exit_status = std::get_if<int>(&options)) return *exit_status;
+  return flatlight::Run(std::get<flatlight::DaemonOptions>(options));
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/app/options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace flatlight {
+
+std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int processors, const std::string& version) {
+  constexpr int kMaxThreads = 1024;
+  constexpr int kBadUsage = 2;
+  DaemonOptions options;
+  options.threads = processors;
+  CLI::App app("The Flatlight server: renders plane scenes and streams what it has so far.");
+  app.set_version_flag("--version", "flatlightd " + version);
+  app.add_option("--listen", options.listen, "HOST:PORT on this machine (port 0: any free one), or unix:PATH")
+      ->capture_default_str();
+  app.add_option("--threads", options.threads, "threads for rendering")
+      ->capture_default_str()
+      ->check(CLI::Range(1, kMaxThreads));
+  app.add_option("--token-file", options.token_file,
+                 "a file holding the token that callers must present; default: the variable FLATLIGHT_TOKEN, or none");
+  app.add_flag("--exit-with-parent", options.exit_with_parent, "end when standard input ends");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadUsage;
+  }
+  return options;
+}
+
+}  // namespace flatlight

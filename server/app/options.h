@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_APP_OPTIONS_H_
+#define FLATLIGHT_SERVER_APP_OPTIONS_H_
+
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace flatlight {
+
+// The command line of flatlightd.
+struct DaemonOptions {
+  std::string listen = "127.0.0.1:7000";
+  int threads = 1;
+  std::string token_file;         // Empty: the environment's FLATLIGHT_TOKEN, if there is one.
+  bool exit_with_parent = false;  // End when standard input does.
+};
+
+// The options, or the exit status of a program that is done already (help, version: 0; bad usage: 2).
+std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int processors, const std::string& version);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_APP_OPTIONS_H_

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_SERVICE_BACKEND_H_
+#define FLATLIGHT_SERVER_SERVICE_BACKEND_H_
+
+#include <atomic>
+#include <string>
+
+#include "core/execution/executor.h"
+#include "server/scheduler/scheduler.h"
+#include "server/scheduler/task_queue.h"
+#include "server/service/guard.h"
+#include "server/service/limits.h"
+#include "server/store/job_store.h"
+#include "server/store/scene_store.h"
+
+namespace flatlight {
+
+// What the services share. They hold no state of their own.
+struct Backend {
+  const std::string version;
+  const Limits limits;
+  const int threads;  // For rendering.
+  const Guard guard;
+  JobStore& jobs;
+  SceneStore& scenes;
+  Scheduler& scheduler;
+  // For work that takes longer than an event thread may: requests of ordinary size, and those that may take seconds.
+  TaskQueue& quick;
+  TaskQueue& slow;
+  std::atomic<bool> draining = false;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SERVICE_BACKEND_H_

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// What all unary calls have in common: the guard, the parsing, the thread, the answer. Calls are taken as raw bytes
+// because gRPC's own parser answers rubbish with UNIMPLEMENTED.
+#ifndef FLATLIGHT_SERVER_SERVICE_CALL_H_
+#define FLATLIGHT_SERVER_SERVICE_CALL_H_
+
+#include <memory>
+#include <utility>
+
+#include "absl/status/statusor.h"
+#include "grpcpp/server_context.h"
+#include "grpcpp/support/server_callback.h"
+#include "server/service/backend.h"
+#include "server/service/message_bytes.h"
+#include "server/service/status_convert.h"
+#include "server/store/error.h"
+
+namespace flatlight {
+
+enum class Lane : std::uint8_t { kInline, kQuick, kSlow };
+
+// Larger requests are parsed and handled in the slow lane.
+inline constexpr std::size_t kMaxQuickBytes = 256u << 10;
+
+// Finishes with RESOURCE_EXHAUSTED if too much waits in the lane already.
+template <class Task>
+absl::Status PostTo(TaskQueue& queue, std::size_t bytes, Task task) {
+  if (queue.Post(bytes, std::move(task))) return absl::OkStatus();
+  return MakeQuotaError("SERVER_BUSY", "max_waiting_bytes", "too many requests wait already",
+                        std::chrono::milliseconds(500));
+}
+
+// Answers a unary call with `work(caller, request)`, a StatusOr<Response>, run in `lane(request)`.
+template <class Request, class LaneOf, class Work>
+grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* context, const grpc::ByteBuffer* bytes,
+                                 grpc::ByteBuffer* answer, LaneOf lane, Work work) {
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  absl::StatusOr<Caller> caller = backend.guard.Authorize(*context);
+  if (!caller.ok()) {
+    reactor->Finish(ToGrpcStatus(caller.status()));
+    return reactor;
+  }
+  const auto finish = [reactor, answer, work, caller = *std::move(caller)](const Request& request) {
+    auto response = work(caller, request);
+    if (response.ok()) *answer = ToBytes(*response);
+    reactor->Finish(ToGrpcStatus(response.status()));
+  };
+  const auto parse = [reactor, bytes](Request& request) {
+    const absl::Status parsed = FromBytes(*bytes, request);
+    if (!parsed.ok()) reactor->Finish(ToGrpcStatus(parsed));
+    return parsed.ok();
+  };
+  const std::size_t size = bytes->Length();
+  absl::Status posted;
+  if (size > kMaxQuickBytes) {
+    posted = PostTo(backend.slow, size, [parse, finish] {
+      Request request;
+      if (parse(request)) finish(request);
+    });
+  } else {
+    auto request = std::make_shared<Request>();
+    if (!parse(*request)) return reactor;
+    switch (lane(*request)) {
+      case Lane::kInline:
+        finish(*request);
+        break;
+      case Lane::kQuick:
+        posted = PostTo(backend.quick, size, [request, finish] { finish(*request); });
+        break;
+      case Lane::kSlow:
+        posted = PostTo(backend.slow, size, [request, finish] { finish(*request); });
+        break;
+    }
+  }
+  if (!posted.ok()) reactor->Finish(ToGrpcStatus(posted));
+  return reactor;
+}
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SERVICE_CALL_H_

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/job_convert.h"
+
+#include <chrono>
+
+#include "server/convert/result_convert.h"
+#include "server/convert/settings_convert.h"
+#include "server/service/status_convert.h"
+#include "server/store/error.h"
+#include "server/store/sha256.h"
+
+namespace flatlight {
+namespace {
+
+v1::Job::State PhaseToProto(JobPhase phase) {
+  switch (phase) {
+    case JobPhase::kQueued:
+      return v1::Job::QUEUED;
+    case JobPhase::kRunning:
+      return v1::Job::RUNNING;
+    case JobPhase::kSucceeded:
+      return v1::Job::SUCCEEDED;
+    case JobPhase::kFailed:
+      return v1::Job::FAILED;
+    case JobPhase::kCancelled:
+      return v1::Job::CANCELLED;
+  }
+  return v1::Job::STATE_UNSPECIFIED;
+}
+
+void SetTime(WallTime time, google::protobuf::Timestamp& out) {
+  using std::chrono::duration_cast;
+  using std::chrono::nanoseconds;
+  using std::chrono::seconds;
+  const auto since_epoch = time.time_since_epoch();
+  const auto whole = std::chrono::floor<seconds>(since_epoch);
+  out.set_seconds(whole.count());
+  out.set_nanos(static_cast<std::int32_t>(duration_cast<nanoseconds>(since_epoch - whole).count()));
+}
+
+void FillProgress(const JobState& state, v1::Progress& out) {
+  const RenderProgress& progress = state.progress;
+  out.set_fraction(progress.fraction);
+  out.set_samples(progress.samples);
+  out.set_rays(progress.rays);
+  out.set_elapsed_seconds(state.elapsed_seconds);
+  if (progress.remaining_seconds && !HasEnded(state.phase)) out.set_remaining_seconds(*progress.remaining_seconds);
+  if (progress.relative_error) out.set_relative_error(*progress.relative_error);
+}
+
+// What decides a result's bits. Threads and skips do not.
+std::string JobKey(const JobSpec& spec, const std::string& build) {
+  v1::Settings settings = SettingsToProto(spec.plan.settings);
+  settings.clear_threads();
+  settings.clear_no_skip();
+  Sha256 hash;
+  hash.Add(spec.scene->world_hash());
+  hash.Add(spec.scene->probe_hash());
+  hash.Add(settings.SerializeAsString());
+  hash.Add(build);
+  return hash.Finish();
+}
+
+}  // namespace
+
+v1::Job JobToProto(const JobSpec& spec, const JobState& state, JobView view) {
+  v1::Job job;
+  job.set_name(spec.id.Name());
+  if (view == JobView::kWhole) {
+    job.set_scene(spec.scene->name());
+    *job.mutable_settings() = SettingsToProto(spec.settings);
+    *job.mutable_plan() = PlanToProto(spec.plan);
+  }
+  job.set_state(PhaseToProto(state.phase));
+  FillProgress(state, *job.mutable_progress());
+  SetTime(spec.create_time, *job.mutable_create_time());
+  if (state.start_time) SetTime(*state.start_time, *job.mutable_start_time());
+  if (state.end_time) SetTime(*state.end_time, *job.mutable_end_time());
+  if (state.end_reason) job.set_end_reason(EndReasonToProto(*state.end_reason));
+  if (!state.error.ok()) *job.mutable_error() = ToRpcStatus(state.error);
+  return job;
+}
+
+absl::StatusOr<v1::RenderResult> MakeResult(const JobRecord& job, const std::string& build) {
+  const JobSpec& spec = *job.spec;
+  const JobState& state = *job.state;
+  if (!HasEnded(state.phase)) {
+    return MakeError(absl::StatusCode::kFailedPrecondition, "JOB_NOT_ENDED",
+                     spec.id.Name() + " has not ended; watch it until it has, or cancel it");
+  }
+  if (state.field == nullptr) {
+    return MakeError(absl::StatusCode::kFailedPrecondition, "NO_RESULT",
+                     spec.id.Name() + " ended before anything was rendered");
+  }
+  v1::RenderResult result = ResultToProto(*spec.scene, *state.field);
+  result.set_job_key(JobKey(spec, build));
+  result.set_build(build);
+  *result.mutable_settings() = SettingsToProto(spec.settings);
+  *result.mutable_plan() = PlanToProto(spec.plan);
+  if (state.end_reason) result.set_end_reason(EndReasonToProto(*state.end_reason));
+  result.mutable_statistics()->set_wall_seconds(state.elapsed_seconds);
+  result.mutable_statistics()->set_cpu_seconds(state.cpu_seconds);
+  return result;
+}
+
+absl::StatusOr<JobId> ParseJobName(const std::string& name) {
+  if (const auto id = JobId::FromName(name)) return *id;
+  return MakeFieldError("name", "\"" + name + "\"; a job is named jobs/{uuid}");
+}
+
+}  // namespace flatlight

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_SERVICE_JOB_CONVERT_H_
+#define FLATLIGHT_SERVER_SERVICE_JOB_CONVERT_H_
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "flatlight/v1/render_service.pb.h"
+#include "flatlight/v1/result.pb.h"
+#include "server/store/job.h"
+
+namespace flatlight {
+
+enum class JobView : std::uint8_t { kWhole, kChanging };
+
+// kChanging leaves out what never changes: scene, settings, plan.
+v1::Job JobToProto(const JobSpec& spec, const JobState& state, JobView view);
+
+// FAILED_PRECONDITION if the job has not ended, or ended without a picture.
+absl::StatusOr<v1::RenderResult> MakeResult(const JobRecord& job, const std::string& build);
+
+// INVALID_ARGUMENT if `name` is not jobs/{uuid}.
+absl::StatusOr<JobId> ParseJobName(const std::string& name);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SERVICE_JOB_CONVERT_H_

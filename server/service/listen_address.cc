@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/listen_address.h"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cstring>
+#include <string_view>
+
+#include "server/store/error.h"
+
+namespace flatlight {
+namespace {
+
+constexpr std::string_view kUnix = "unix:";
+
+absl::Status BadAddress(const std::string& message) {
+  return MakeError(absl::StatusCode::kInvalidArgument, "BAD_ADDRESS", message);
+}
+
+bool IsLoopback4(const std::string& host) {
+  in_addr address{};
+  return inet_pton(AF_INET, host.c_str(), &address) == 1 && (ntohl(address.s_addr) >> 24) == 127;
+}
+
+}  // namespace
+
+std::string ListenAddress::ToString(int bound_port) const {
+  return path.empty() ? host + ":" + std::to_string(bound_port) : "unix:" + path;
+}
+
+absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text) {
+  ListenAddress address;
+  if (std::string_view(text).starts_with(kUnix)) {
+    address.path = text.substr(kUnix.size());
+    const std::size_t longest = sizeof(sockaddr_un{}.sun_path) - 1;
+    if (address.path.empty() || address.path.size() > longest) {
+      return BadAddress("the path of a Unix socket has " + std::to_string(address.path.size()) +
+                        " bytes; allowed: 1 to " + std::to_string(longest));
+    }
+    return address;
+  }
+  const std::size_t colon = text.rfind(':');
+  const std::string form =
+      "\"" + text + "\" is not an address; give HOST:PORT or unix:PATH, for instance 127.0.0.1:7000";
+  if (colon == std::string::npos) return BadAddress(form);
+  const char* end = text.data() + text.size();
+  const auto port = std::from_chars(text.data() + colon + 1, end, address.port);
+  if (port.ec != std::errc() || port.ptr != end || address.port < 0 || address.port > 65535) return BadAddress(form);
+  address.host = text.substr(0, colon);
+  if (address.host == "localhost") address.host = "127.0.0.1";
+  if (!IsLoopback4(address.host) && address.host != "[::1]") {
+    return BadAddress("\"" + address.host +
+                      "\" is not a loopback address; without TLS this server is for its own machine: 127.0.0.1, [::1], "
+                      "localhost or unix:PATH");
+  }
+  return address;
+}
+
+bool IsListening(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::memcpy(address.sun_path, path.c_str(), path.size());
+  const int socket_fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (socket_fd < 0) return false;
+  const bool connected = connect(socket_fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+  close(socket_fd);
+  return connected;
+}
+
+}  // namespace flatlight

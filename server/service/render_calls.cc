@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/render_calls.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "core/render/plan.h"
+#include "server/convert/settings_convert.h"
+#include "server/service/job_convert.h"
+#include "server/service/page.h"
+#include "server/service/scene_source.h"
+#include "server/service/status_convert.h"
+#include "server/store/error.h"
+#include "server/store/sha256.h"
+
+namespace flatlight {
+namespace {
+
+constexpr std::size_t kMaxRequestIdBytes = 128;
+
+struct PlannedScene {
+  std::shared_ptr<const Scene> scene;
+  Settings settings;
+  Plan plan;
+};
+
+// Every mistake of the scene and of the settings is reported at once.
+absl::StatusOr<PlannedScene> MakePlannedScene(Backend& backend, const v1::SceneSource& source,
+                                              const v1::Settings& settings) {
+  PlannedScene planned;
+  Diagnostics scene_diagnostics;
+  auto scene = LoadScene(source, backend.scenes, backend.limits, scene_diagnostics);
+  if (!scene.ok()) return scene.status();
+  planned.scene = *std::move(scene);
+  Diagnostics diagnostics = scene_diagnostics;
+  planned.settings = SettingsFromProto(settings, diagnostics);
+  std::optional<Plan> plan;
+  if (planned.scene != nullptr && diagnostics.empty()) plan = MakePlan(*planned.scene, planned.settings, diagnostics);
+  if (!scene_diagnostics.empty()) return MakeDiagnosticsError("BAD_SCENE", "the scene", diagnostics);
+  if (!plan) return MakeDiagnosticsError("BAD_SETTINGS", "the settings", diagnostics);
+  planned.plan = *std::move(plan);
+  const auto threads = static_cast<std::uint32_t>(backend.threads);
+  planned.plan.settings.threads = std::min(planned.settings.threads.value_or(threads), threads);
+  return planned;
+}
+
+absl::StatusOr<std::optional<RequestKey>> KeyOf(const Caller& caller, const v1::CreateJobRequest& request) {
+  if (request.request_id().empty()) return std::optional<RequestKey>();
+  if (request.request_id().size() > kMaxRequestIdBytes) {
+    return MakeFieldError("request_id", std::to_string(request.request_id().size()) + " bytes; allowed: at most " +
+                                            std::to_string(kMaxRequestIdBytes));
+  }
+  v1::CreateJobRequest rest = request;
+  rest.clear_request_id();
+  return std::optional<RequestKey>(
+      {caller.name, "CreateJob", request.request_id(), Sha256Of(rest.SerializeAsString())});
+}
+
+v1::Job WholeJob(const JobRecord& job) { return JobToProto(*job.spec, *job.state, JobView::kWhole); }
+
+}  // namespace
+
+absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const v1::CreateJobRequest& request) {
+  if (backend.draining) return MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down");
+  const auto key = KeyOf(caller, request);
+  if (!key.ok()) return key.status();
+  if (*key) {
+    const auto earlier = backend.jobs.FindRequest(**key);
+    if (!earlier.ok()) return earlier.status();
+    if (*earlier) {
+      const auto job = backend.jobs.Get(**earlier);
+      if (!job.ok()) return job.status();
+      return WholeJob(*job);
+    }
+  }
+  auto planned = MakePlannedScene(backend, request.scene(), request.settings());
+  if (!planned.ok()) return planned.status();
+  auto spec = std::make_shared<JobSpec>();
+  spec->id = JobId::Random();
+  spec->owner = caller.name;
+  spec->scene = std::move(planned->scene);
+  spec->settings = std::move(planned->settings);
+  spec->plan = std::move(planned->plan);
+  spec->create_time = std::chrono::system_clock::now();
+  const auto job = backend.scheduler.Submit(std::move(spec), *key);
+  if (!job.ok()) return job.status();
+  return WholeJob(*job);
+}
+
+absl::StatusOr<v1::Job> GetJob(Backend& backend, const v1::GetJobRequest& request) {
+  const auto id = ParseJobName(request.name());
+  if (!id.ok()) return id.status();
+  const auto job = backend.jobs.Get(*id);
+  if (!job.ok()) return job.status();
+  return WholeJob(*job);
+}
+
+absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJobsRequest& request) {
+  const auto page = ParsePage(request.page_size(), request.page_token());
+  if (!page.ok()) return page.status();
+  const JobPage jobs = backend.jobs.List(page->position, page->size);
+  v1::ListJobsResponse response;
+  for (const JobRecord& job : jobs.jobs) *response.add_jobs() = WholeJob(job);
+  if (jobs.next_before) response.set_next_page_token(PageToken(*jobs.next_before));
+  return response;
+}
+
+absl::StatusOr<v1::Job> CancelJob(Backend& backend, const v1::CancelJobRequest& request) {
+  const auto id = ParseJobName(request.name());
+  if (!id.ok()) return id.status();
+  const auto job = backend.scheduler.Cancel(*id);
+  if (!job.ok()) return job.status();
+  return WholeJob(*job);
+}
+
+absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const v1::DeleteJobRequest& request) {
+  const auto id = ParseJobName(request.name());
+  if (!id.ok()) return id.status();
+  if (absl::Status deleted = backend.scheduler.Delete(*id); !deleted.ok()) return deleted;
+  return v1::DeleteJobResponse();
+}
+
+absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const v1::ExplainJobRequest& request) {
+  const auto planned = MakePlannedScene(backend, request.scene(), request.settings());
+  if (!planned.ok()) return planned.status();
+  v1::ExplainJobResponse response;
+  *response.mutable_plan() = PlanToProto(planned->plan);
+  return response;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_SERVICE_RENDER_CALLS_H_
+#define FLATLIGHT_SERVER_SERVICE_RENDER_CALLS_H_
+
+#include "absl/status/statusor.h"
+#include "flatlight/v1/render_service.pb.h"
+#include "server/service/backend.h"
+
+namespace flatlight {
+
+// The unary calls of RenderService as plain functions.
+absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const v1::CreateJobRequest& request);
+absl::StatusOr<v1::Job> GetJob(Backend& backend, const v1::GetJobRequest& request);
+absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJobsRequest& request);
+absl::StatusOr<v1::Job> CancelJob(Backend& backend, const v1::CancelJobRequest& request);
+absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const v1::DeleteJobRequest& request);
+absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const v1::ExplainJobRequest& request);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SERVICE_RENDER_CALLS_H_

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/render_service.h"
+
+#include <memory>
+
+#include "server/service/call.h"
+#include "server/service/job_convert.h"
+#include "server/service/render_calls.h"
+#include "server/service/result_stream.h"
+#include "server/service/scene_lane.h"
+#include "server/service/watcher.h"
+
+namespace flatlight {
+namespace {
+
+constexpr double kDefaultRate = 20;
+constexpr double kMaxRate = 1000;
+
+constexpr auto kInlineLane = [](const auto&) { return Lane::kInline; };
+constexpr auto kQuickLane = [](const auto&) { return Lane::kQuick; };
+
+// A stream that ends before it begins. Deletes itself.
+class RefusedStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
+ public:
+  explicit RefusedStream(const absl::Status& why) { Finish(ToGrpcStatus(why)); }
+  void OnDone() override { delete this; }
+};
+
+}  // namespace
+
+grpc::ServerUnaryReactor* RenderService::CreateJob(Context* context, const Bytes* request, Bytes* response) {
+  const auto lane = [this](const v1::CreateJobRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
+  return Answer<v1::CreateJobRequest>(backend_, context, request, response, lane,
+                                      [this](const Caller& caller, const v1::CreateJobRequest& r) {
+                                        return flatlight::CreateJob(backend_, caller, r);
+                                      });
+}
+
+grpc::ServerUnaryReactor* RenderService::GetJob(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::GetJobRequest>(
+      backend_, context, request, response, kInlineLane,
+      [this](const Caller&, const v1::GetJobRequest& r) { return flatlight::GetJob(backend_, r); });
+}
+
+grpc::ServerUnaryReactor* RenderService::ListJobs(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::ListJobsRequest>(
+      backend_, context, request, response, kQuickLane,
+      [this](const Caller&, const v1::ListJobsRequest& r) { return flatlight::ListJobs(backend_, r); });
+}
+
+grpc::ServerUnaryReactor* RenderService::CancelJob(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::CancelJobRequest>(
+      backend_, context, request, response, kQuickLane,
+      [this](const Caller&, const v1::CancelJobRequest& r) { return flatlight::CancelJob(backend_, r); });
+}
+
+grpc::ServerUnaryReactor* RenderService::DeleteJob(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::DeleteJobRequest>(
+      backend_, context, request, response, kQuickLane,
+      [this](const Caller&, const v1::DeleteJobRequest& r) { return flatlight::DeleteJob(backend_, r); });
+}
+
+grpc::ServerUnaryReactor* RenderService::ExplainJob(Context* context, const Bytes* request, Bytes* response) {
+  const auto lane = [this](const v1::ExplainJobRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
+  return Answer<v1::ExplainJobRequest>(
+      backend_, context, request, response, lane,
+      [this](const Caller&, const v1::ExplainJobRequest& r) { return flatlight::ExplainJob(backend_, r); });
+}
+
+grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::WatchJob(Context* context, const Bytes* request) {
+  const auto watcher = StartWatch(*context, *request);
+  if (!watcher.ok()) return new RefusedStream(watcher.status());
+  return watcher->get();
+}
+
+absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context& context, const Bytes& bytes) {
+  const auto caller = backend_.guard.Authorize(context);
+  if (!caller.ok()) return caller.status();
+  v1::WatchJobRequest request;
+  if (absl::Status parsed = FromBytes(bytes, request); !parsed.ok()) return parsed;
+  const auto id = ParseJobName(request.name());
+  if (!id.ok()) return id.status();
+  const double rate = request.has_max_rate() ? request.max_rate() : kDefaultRate;
+  if (!(rate > 0 && rate <= kMaxRate)) {
+    return MakeFieldError("max_rate", std::to_string(rate) + "; allowed: more than 0, at most 1000 (updates a second)");
+  }
+  const auto job = backend_.jobs.Get(*id);
+  if (!job.ok()) return job.status();
+  WatchUpdate::Known known;
+  if (request.epoch() == hub_.options().epoch && request.sequence() > 0) {
+    known = request.sequence();
+    if (*known > job->state->sequence) {
+      return MakeError(absl::StatusCode::kOutOfRange, "SEQUENCE_AHEAD",
+                       "sequence is " + std::to_string(*known) + "; " + request.name() + " is at " +
+                           std::to_string(job->state->sequence));
+    }
+  }
+  // Slow enough rates mean: only the first state and the last.
+  const double seconds = std::min(1 / rate, 1e6);
+  const auto interval = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
+  auto watcher = std::make_shared<Watcher>(hub_, *id, known, interval);
+  if (absl::Status added = hub_.Add(*id, watcher); !added.ok()) return added;
+  return watcher;
+}
+
+grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::GetResult(Context* context, const Bytes* bytes) {
+  const auto caller = backend_.guard.Authorize(*context);
+  if (!caller.ok()) return new RefusedStream(caller.status());
+  v1::GetResultRequest request;
+  if (absl::Status parsed = FromBytes(*bytes, request); !parsed.ok()) return new RefusedStream(parsed);
+  const auto id = ParseJobName(request.name());
+  if (!id.ok()) return new RefusedStream(id.status());
+  auto stream = std::make_unique<ResultStream>();
+  const absl::Status posted = PostTo(backend_.quick, 0, [this, id = *id, stream = stream.get()] {
+    const auto job = backend_.jobs.Get(id);
+    if (!job.ok()) return stream->Fail(ToGrpcStatus(job.status()));
+    auto result = results_.Get(*job, backend_.version);
+    if (!result.ok()) return stream->Fail(ToGrpcStatus(result.status()));
+    stream->Send(*std::move(result));
+  });
+  if (!posted.ok()) return new RefusedStream(posted);
+  return stream.release();
+}
+
+}  // namespace flatlight

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/scene_calls.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/render/plan.h"
+#include "server/convert/result_convert.h"
+#include "server/convert/scene_reader.h"
+#include "server/gallery/gallery.h"
+#include "server/service/page.h"
+#include "server/service/scene_source.h"
+#include "server/service/status_convert.h"
+#include "server/store/error.h"
+
+namespace flatlight {
+namespace {
+
+// Positions of a list of scenes: the gallery's are 0, 1, ...; uploads follow, each at this plus where its page begins.
+constexpr std::uint64_t kUploads = 1'000'000;
+
+void AddGallery(std::uint64_t position, std::size_t size, v1::ListScenesResponse& response) {
+  const auto& gallery = Gallery();
+  for (; position < gallery.size() && static_cast<std::size_t>(response.scenes_size()) < size; ++position) {
+    const GalleryScene& scene = gallery[position];
+    v1::SceneInfo& info = *response.add_scenes();
+    info.set_name("scenes/" + scene.name);
+    info.set_title(scene.title);
+    info.set_description(scene.description);
+    info.set_gallery(true);
+    info.set_bytes(static_cast<double>(scene.json.size()));
+  }
+  if (position < gallery.size()) response.set_next_page_token(PageToken(position));
+}
+
+}  // namespace
+
+absl::StatusOr<v1::UploadSceneResponse> UploadScene(Backend& backend, const v1::UploadSceneRequest& request) {
+  const auto received =
+      backend.scenes.Upload(request.sha256(), request.total_bytes(), request.offset(), request.data());
+  if (!received.ok()) return received.status();
+  v1::UploadSceneResponse response;
+  response.set_name("scenes/" + request.sha256());
+  response.set_received_bytes(*received);
+  return response;
+}
+
+absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const v1::GetSceneRequest& request) {
+  auto scene = FindScene(request.name(), backend.scenes);
+  if (!scene.ok()) return scene.status();
+  v1::GetSceneResponse response;
+  Diagnostics diagnostics;
+  if (!ReadSceneJson(*scene->json, *response.mutable_scene(), diagnostics)) {
+    return MakeDiagnosticsError("BAD_SCENE", "the scene", diagnostics);
+  }
+  *response.mutable_info() = std::move(scene->info);
+  return response;
+}
+
+absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const v1::ListScenesRequest& request) {
+  const auto page = ParsePage(request.page_size(), request.page_token());
+  if (!page.ok()) return page.status();
+  const std::uint64_t position = page->position.value_or(0);
+  v1::ListScenesResponse response;
+  if (position < kUploads) AddGallery(position, page->size, response);
+  if (!response.next_page_token().empty()) return response;
+  std::optional<std::uint64_t> before;
+  if (position > kUploads) before = position - kUploads;
+  const std::size_t room = page->size - static_cast<std::size_t>(response.scenes_size());
+  const ScenePage uploads = backend.scenes.List(before, std::max<std::size_t>(room, 1));
+  if (room == 0) {
+    if (!uploads.scenes.empty()) response.set_next_page_token(PageToken(kUploads));
+    return response;
+  }
+  for (const StoredScene& scene : uploads.scenes) {
+    v1::SceneInfo& info = *response.add_scenes();
+    info.set_name("scenes/" + scene.sha256);
+    info.set_title(scene.title);
+    info.set_bytes(static_cast<double>(scene.bytes->size()));
+  }
+  if (uploads.next_before) response.set_next_page_token(PageToken(kUploads + *uploads.next_before));
+  return response;
+}
+
+absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const v1::DeleteSceneRequest& request) {
+  const auto scene = FindScene(request.name(), backend.scenes);
+  if (!scene.ok()) return scene.status();
+  if (scene->info.gallery()) {
+    return MakeError(absl::StatusCode::kFailedPrecondition, "GALLERY_SCENE",
+                     request.name() + " belongs to the gallery and stays");
+  }
+  const std::string sha256 = request.name().substr(std::string("scenes/").size());
+  if (absl::Status deleted = backend.scenes.Delete(sha256); !deleted.ok()) return deleted;
+  return v1::DeleteSceneResponse();
+}
+
+absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const v1::ValidateSceneRequest& request) {
+  Diagnostics diagnostics;
+  const auto scene = LoadScene(request.scene(), backend.scenes, backend.limits, diagnostics);
+  if (!scene.ok()) return scene.status();
+  v1::ValidateSceneResponse response;
+  for (const Diagnostic& diagnostic : diagnostics.kept()) {
+    v1::Diagnostic& out = *response.add_diagnostics();
+    out.set_path(diagnostic.path);
+    out.set_message(diagnostic.message);
+  }
+  response.set_more_diagnostics(static_cast<std::uint32_t>(diagnostics.count() - diagnostics.kept().size()));
+  if (*scene != nullptr) {
+    response.set_world_hash((*scene)->world_hash());
+    response.set_probe_hash((*scene)->probe_hash());
+    *response.mutable_traits() = TraitsToProto((*scene)->traits());
+  }
+  return response;
+}
+
+v1::GetCapabilitiesResponse GetCapabilities(const Backend& backend) {
+  v1::GetCapabilitiesResponse response;
+  response.set_version(backend.version);
+  response.set_api_version("flatlight.v1");
+  for (const std::string& method : MethodNames()) response.add_methods(method);
+  for (const std::string& skip : SkipNames()) response.add_skips(skip);
+  v1::Limits& limits = *response.mutable_limits();
+  limits.set_max_message_bytes(backend.limits.max_message_bytes);
+  limits.set_max_scene_bytes(backend.limits.max_scene_bytes);
+  limits.set_max_scene_depth(kMaxSceneDepth);
+  limits.set_max_curves(backend.limits.max_curves);
+  limits.set_max_probe_points(backend.limits.max_probe_points);
+  limits.set_max_running_jobs(backend.limits.max_running_jobs);
+  limits.set_max_jobs(backend.limits.max_jobs);
+  limits.set_max_watches(backend.limits.max_watches);
+  response.set_threads(static_cast<std::uint32_t>(backend.threads));
+  return response;
+}
+
+}  // namespace flatlight

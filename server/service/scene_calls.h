@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_SERVICE_SCENE_CALLS_H_
+#define FLATLIGHT_SERVER_SERVICE_SCENE_CALLS_H_
+
+#include "absl/status/statusor.h"
+#include "flatlight/v1/scene_service.pb.h"
+#include "flatlight/v1/server_service.pb.h"
+#include "server/service/backend.h"
+
+namespace flatlight {
+
+// The calls of SceneService and ServerService as plain functions.
+absl::StatusOr<v1::UploadSceneResponse> UploadScene(Backend& backend, const v1::UploadSceneRequest& request);
+absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const v1::GetSceneRequest& request);
+absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const v1::ListScenesRequest& request);
+absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const v1::DeleteSceneRequest& request);
+absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const v1::ValidateSceneRequest& request);
+v1::GetCapabilitiesResponse GetCapabilities(const Backend& backend);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SERVICE_SCENE_CALLS_H_

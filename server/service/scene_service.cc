@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/scene_service.h"
+
+#include "server/service/call.h"
+#include "server/service/scene_calls.h"
+#include "server/service/scene_lane.h"
+
+namespace flatlight {
+namespace {
+
+constexpr auto kInlineLane = [](const auto&) { return Lane::kInline; };
+constexpr auto kQuickLane = [](const auto&) { return Lane::kQuick; };
+
+}  // namespace
+
+grpc::ServerUnaryReactor* SceneService::UploadScene(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::UploadSceneRequest>(
+      backend_, context, request, response, kQuickLane,
+      [this](const Caller&, const v1::UploadSceneRequest& r) { return flatlight::UploadScene(backend_, r); });
+}
+
+grpc::ServerUnaryReactor* SceneService::GetScene(Context* context, const Bytes* request, Bytes* response) {
+  const auto lane = [this](const v1::GetSceneRequest& r) { return LaneOf(r.name(), backend_.scenes); };
+  return Answer<v1::GetSceneRequest>(
+      backend_, context, request, response, lane,
+      [this](const Caller&, const v1::GetSceneRequest& r) { return flatlight::GetScene(backend_, r); });
+}
+
+grpc::ServerUnaryReactor* SceneService::ListScenes(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::ListScenesRequest>(
+      backend_, context, request, response, kQuickLane,
+      [this](const Caller&, const v1::ListScenesRequest& r) { return flatlight::ListScenes(backend_, r); });
+}
+
+grpc::ServerUnaryReactor* SceneService::DeleteScene(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::DeleteSceneRequest>(
+      backend_, context, request, response, kQuickLane,
+      [this](const Caller&, const v1::DeleteSceneRequest& r) { return flatlight::DeleteScene(backend_, r); });
+}
+
+grpc::ServerUnaryReactor* SceneService::ValidateScene(Context* context, const Bytes* request, Bytes* response) {
+  const auto lane = [this](const v1::ValidateSceneRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
+  return Answer<v1::ValidateSceneRequest>(
+      backend_, context, request, response, lane,
+      [this](const Caller&, const v1::ValidateSceneRequest& r) { return flatlight::ValidateScene(backend_, r); });
+}
+
+grpc::ServerUnaryReactor* ServerService::GetCapabilities(grpc::CallbackServerContext* context,
+                                                         const grpc::ByteBuffer* request, grpc::ByteBuffer* response) {
+  return Answer<v1::GetCapabilitiesRequest>(
+      backend_, context, request, response, kInlineLane, [this](const Caller&, const v1::GetCapabilitiesRequest&) {
+        return absl::StatusOr<v1::GetCapabilitiesResponse>(flatlight::GetCapabilities(backend_));
+      });
+}
+
+}  // namespace flatlight

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/scene_source.h"
+
+#include <string_view>
+
+#include "server/convert/scene_convert.h"
+#include "server/convert/scene_reader.h"
+#include "server/gallery/gallery.h"
+#include "server/service/status_convert.h"
+#include "server/store/error.h"
+#include "server/store/sha256.h"
+
+namespace flatlight {
+namespace {
+
+constexpr std::string_view kPrefix = "scenes/";
+
+// Before anything is built: what a few bytes ask for can be large.
+bool WithinLimits(const v1::Scene& scene, const Limits& limits, Diagnostics& diagnostics) {
+  std::uint64_t pieces = 0;
+  for (const v1::Curve& curve : scene.plane().curves()) {
+    pieces += curve.has_polyline() ? static_cast<std::uint64_t>(curve.polyline().points_size()) : 1;
+  }
+  if (pieces > limits.max_curves) {
+    diagnostics.Add("plane.curves", std::to_string(pieces) + " curves and pieces of polylines; allowed: at most " +
+                                        std::to_string(limits.max_curves));
+  }
+  std::uint64_t points = 0;
+  for (const v1::Probe& probe : scene.probes()) {
+    points += probe.count() + static_cast<std::uint64_t>(probe.points_size());
+  }
+  if (points > limits.max_probe_points) {
+    diagnostics.Add("probes", std::to_string(points) + " points in all; allowed: at most " +
+                                  std::to_string(limits.max_probe_points));
+  }
+  return pieces <= limits.max_curves && points <= limits.max_probe_points;
+}
+
+}  // namespace
+
+absl::StatusOr<NamedScene> FindScene(const std::string& name, SceneStore& scenes) {
+  const std::string_view view = name;
+  if (!view.starts_with(kPrefix) || view.size() == kPrefix.size() || view.size() > kPrefix.size() + 64) {
+    return MakeFieldError("name", "\"" + name + "\"; a scene is named scenes/{gallery name} or scenes/{sha256}");
+  }
+  const std::string id(view.substr(kPrefix.size()));
+  NamedScene scene;
+  scene.info.set_name(name);
+  if (const GalleryScene* gallery = FindGalleryScene(id)) {
+    scene.info.set_title(gallery->title);
+    scene.info.set_description(gallery->description);
+    scene.info.set_gallery(true);
+    scene.json = std::shared_ptr<const std::string>(std::shared_ptr<void>(), &gallery->json);
+  } else {
+    const auto stored = scenes.Get(id);
+    if (!stored.ok()) return stored.status();
+    scene.info.set_title(stored->title);
+    scene.json = stored->bytes;
+  }
+  scene.info.set_bytes(static_cast<double>(scene.json->size()));
+  return scene;
+}
+
+absl::StatusOr<std::shared_ptr<const Scene>> LoadScene(const v1::SceneSource& source, SceneStore& scenes,
+                                                       const Limits& limits, Diagnostics& diagnostics) {
+  std::shared_ptr<const Scene> nothing;
+  switch (source.source_case()) {
+    case v1::SceneSource::kScene:
+      if (!WithinLimits(source.scene(), limits, diagnostics)) return nothing;
+      return SceneFromProto(source.scene(), diagnostics);
+    case v1::SceneSource::kName: {
+      const auto named = FindScene(source.name(), scenes);
+      if (!named.ok()) return named.status();
+      v1::Scene proto;
+      const bool read = ReadSceneJson(*named->json, proto, diagnostics);
+      if (!named->info.gallery()) scenes.SetTitle(source.name().substr(kPrefix.size()), proto.name());
+      if (!read || !WithinLimits(proto, limits, diagnostics)) return nothing;
+      return SceneFromProto(proto, diagnostics);
+    }
+    case v1::SceneSource::SOURCE_NOT_SET:
+      break;
+  }
+  return MakeFieldError("scene", "missing; give a name (scenes/{scene}) or a scene");
+}
+
+}  // namespace flatlight

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_SERVICE_SCENE_SOURCE_H_
+#define FLATLIGHT_SERVER_SERVICE_SCENE_SOURCE_H_
+
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "core/scene/diagnostic.h"
+#include "core/scene/scene.h"
+#include "flatlight/v1/render_service.pb.h"
+#include "flatlight/v1/scene.pb.h"
+#include "flatlight/v1/scene_service.pb.h"
+#include "server/service/limits.h"
+#include "server/store/scene_store.h"
+
+namespace flatlight {
+
+// A scene by name: of the gallery, or uploaded.
+struct NamedScene {
+  v1::SceneInfo info;
+  std::shared_ptr<const std::string> json;
+};
+
+// INVALID_ARGUMENT if `name` is not scenes/{scene}, NOT_FOUND if there is none.
+absl::StatusOr<NamedScene> FindScene(const std::string& name, SceneStore& scenes);
+
+// The scene that a request names or carries, checked and ready. Null if it has mistakes: they are in `diagnostics`.
+absl::StatusOr<std::shared_ptr<const Scene>> LoadScene(const v1::SceneSource& source, SceneStore& scenes,
+                                                       const Limits& limits, Diagnostics& diagnostics);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SERVICE_SCENE_SOURCE_H_

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A whole server in one object: what flatlightd runs, and tests too.
+#ifndef FLATLIGHT_SERVER_SERVICE_SERVER_H_
+#define FLATLIGHT_SERVER_SERVICE_SERVER_H_
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "server/scheduler/scheduler.h"
+#include "server/service/limits.h"
+
+namespace flatlight {
+
+struct ServerOptions {
+  std::string address = "127.0.0.1:0";  // A loopback address and port (0: any free one), or unix:PATH.
+  std::string token;                    // What callers must present; empty: nothing.
+  int threads = 1;                      // For rendering.
+  Limits limits;
+  std::chrono::milliseconds heartbeat{10'000};  // Between messages of a watch on which nothing happens.
+  Scheduler::Start start_rendering = StartRendering;
+};
+
+class Server {
+ public:
+  // Serves from now on. INVALID_ARGUMENT for an address that is not allowed, UNAVAILABLE for one that is taken.
+  static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
+  // As Drain without grace.
+  ~Server();
+
+  // Where it can be reached: the address with the port it has.
+  const std::string& address() const;
+  // Ends: health says NOT_SERVING, new jobs are refused, watchers are told, jobs are cancelled; calls under way get
+  // `grace` to end. Returns when all has ended.
+  void Drain(std::chrono::milliseconds grace);
+
+ private:
+  struct Parts;
+  explicit Server(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+// The version of this build, as results state it.
+std::string BuildVersion();
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SERVICE_SERVER_H_

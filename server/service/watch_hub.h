@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_SERVICE_WATCH_HUB_H_
+#define FLATLIGHT_SERVER_SERVICE_WATCH_HUB_H_
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <thread>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/status/status.h"
+#include "server/service/watch_update.h"
+#include "server/store/job_store.h"
+
+namespace flatlight {
+
+class Watcher;
+
+// All watchers, and the one thread that moves those on whose job has changed or whose time has come.
+class WatchHub {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  struct Options {
+    std::uint64_t epoch = 0;
+    std::size_t max_watches = 2000;
+    std::chrono::milliseconds heartbeat{10'000};
+    // A watcher that takes longer for one of several messages lets go of their state, and begins anew with the newest.
+    std::chrono::milliseconds stall{30'000};
+  };
+
+  WatchHub(const Options& options, JobStore& jobs);
+  // All watchers must be gone.
+  ~WatchHub();
+
+  const Options& options() const { return options_; }
+  JobStore& jobs() { return jobs_; }
+
+  // RESOURCE_EXHAUSTED at the limit, UNAVAILABLE while draining.
+  absl::Status Add(const JobId& job, const std::shared_ptr<Watcher>& watcher);
+  void JobChanged(const JobId& job);
+  // Tells every watcher that the server goes down; waits until all have gone, at most `grace`.
+  void Drain(std::chrono::milliseconds grace);
+
+  // For watchers.
+  bool draining() const;
+  std::shared_ptr<WatchUpdate> UpdateFor(const JobRecord& job, WatchUpdate::Known known);
+  void StepSoon(const std::shared_ptr<Watcher>& watcher);
+  void StepAt(const std::shared_ptr<Watcher>& watcher, Time time);
+  void Remove(const JobId& job, const std::shared_ptr<Watcher>& watcher);
+
+ private:
+  struct Watched {
+    std::set<std::shared_ptr<Watcher>> watchers;
+    std::vector<std::shared_ptr<WatchUpdate>> updates;  // To the newest state that was asked for.
+  };
+
+  void Work();
+  // Moves all watchers that are to be stepped now to the caller.
+  std::vector<std::shared_ptr<Watcher>> TakeDue() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Unschedule(Watcher& watcher) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+
+  const Options options_;
+  JobStore& jobs_;
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::condition_variable left_;
+  bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
+  bool draining_ ABSL_GUARDED_BY(mutex_) = false;
+  std::size_t count_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::unordered_map<JobId, Watched> watched_ ABSL_GUARDED_BY(mutex_);
+  std::unordered_set<JobId> changed_ ABSL_GUARDED_BY(mutex_);
+  std::vector<std::shared_ptr<Watcher>> soon_ ABSL_GUARDED_BY(mutex_);
+  std::set<std::pair<Time, std::shared_ptr<Watcher>>> timetable_ ABSL_GUARDED_BY(mutex_);  // One entry a watcher.
+  std::thread thread_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SERVICE_WATCH_HUB_H_

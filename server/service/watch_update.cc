@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/watch_update.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/convert/result_convert.h"
+#include "server/service/job_convert.h"
+#include "server/service/message_bytes.h"
+
+namespace flatlight {
+namespace {
+
+// Updates of more messages are serialised anew for each watcher rather than kept.
+constexpr std::size_t kMaxKeptMessages = 32;
+// Upper bounds: job and progress, and what frames one run of points.
+constexpr std::size_t kHeadBytes = 16u << 10;
+constexpr std::size_t kFrameBytes = 128;
+
+// Upper bound of a point's bytes in a message: 7 arrays of values, 5 numbers of geometry.
+std::size_t BytesPerPoint(const Scene& scene, bool with_values, bool with_geometry) {
+  const auto channels = static_cast<std::size_t>(scene.channels());
+  return sizeof(double) * ((with_values ? 6 * channels + 1 : 0) + (with_geometry ? 5 : 0));
+}
+
+}  // namespace
+
+WatchUpdate::WatchUpdate(JobRecord job, std::uint64_t epoch, Known known)
+    : job_(std::move(job)), epoch_(epoch), known_(Canonical(*job_.state, known)) {
+  PlanMessages();
+  messages_.resize(cuts_.size());
+}
+
+WatchUpdate::Known WatchUpdate::Canonical(const JobState& state, Known known) {
+  if (!known) return known;
+  // Only which versions are newer than the known sequence counts.
+  std::uint64_t newest_known = 0;
+  for (const auto& probe : state.versions.changed) {
+    for (const std::uint64_t version : probe) {
+      if (version <= *known) newest_known = std::max(newest_known, version);
+    }
+  }
+  return newest_known;
+}
+
+void WatchUpdate::PlanMessages() {
+  const Scene& scene = *job_.spec->scene;
+  const JobState& state = *job_.state;
+  cuts_.emplace_back();
+  if (known_ && state.field == nullptr) return;
+  const std::size_t bytes_per_point = BytesPerPoint(scene, state.field != nullptr, !known_);
+  std::size_t room = kMaxMessageBytes - kHeadBytes;
+  for (std::size_t probe = 0; probe < scene.probes().size(); ++probe) {
+    const std::size_t points = scene.probes()[probe].receivers.size();
+    const std::size_t frame_bytes = kFrameBytes + (known_ ? 0 : scene.probes()[probe].name.size());
+    for (std::size_t run = 0; run * FieldVersions::kPoints < points; ++run) {
+      if (known_ && state.versions.changed[probe][run] <= *known_) continue;
+      std::size_t first = run * FieldVersions::kPoints;
+      const std::size_t last = std::min(points, first + FieldVersions::kPoints);
+      while (first < last) {
+        const Cut* open = cuts_.back().empty() ? nullptr : &cuts_.back().back();
+        const bool follows = open != nullptr && open->probe == probe && open->first + open->count == first;
+        const std::size_t frame = follows ? 0 : frame_bytes;
+        if (open != nullptr && room < frame + bytes_per_point) {
+          cuts_.emplace_back();
+          room = kMaxMessageBytes - kHeadBytes;
+          continue;
+        }
+        const std::size_t fit = room > frame ? (room - frame) / bytes_per_point : 0;
+        const std::size_t count = std::clamp<std::size_t>(fit, 1, last - first);
+        if (!follows) cuts_.back().push_back({probe, first, 0});
+        cuts_.back().back().count += count;
+        first += count;
+        room -= std::min(room, frame + count * bytes_per_point);
+      }
+    }
+  }
+}
+
+v1::WatchJobResponse WatchUpdate::Build(std::size_t index) const {
+  const Scene& scene = *job_.spec->scene;
+  const JobState& state = *job_.state;
+  v1::WatchJobResponse message = Heartbeat(epoch_, state.sequence);
+  message.set_more(index + 1 < cuts_.size());
+  if (index == 0) *message.mutable_job() = JobToProto(*job_.spec, state, known_ ? JobView::kChanging : JobView::kWhole);
+  for (const Cut& cut : cuts_[index]) {
+    v1::FieldUpdate& update = *message.add_updates();
+    update.set_probe(static_cast<std::uint32_t>(cut.probe));
+    update.set_first(static_cast<std::uint32_t>(cut.first));
+    v1::ProbeResult& points = *update.mutable_points();
+    if (!known_) {
+      FillProbeGeometry(scene, cut.probe, cut.first, cut.count, points);
+      points.set_quantity(v1::ProbeResult::IRRADIANCE);
+      points.set_count(static_cast<std::uint32_t>(cut.count));
+      points.set_channels(static_cast<std::uint32_t>(scene.channels()));
+    }
+    if (state.field != nullptr) {
+      FillProbeValues(*state.field, scene.channels(), cut.probe, cut.first, cut.count, points);
+    }
+  }
+  return message;
+}
+
+grpc::ByteBuffer WatchUpdate::Message(std::size_t index) {
+  if (index >= kMaxKeptMessages) return ToBytes(Build(index));
+  const std::lock_guard lock(mutex_);
+  std::optional<grpc::ByteBuffer>& kept = messages_[index];
+  if (!kept) kept = ToBytes(Build(index));
+  return *kept;
+}
+
+v1::WatchJobResponse Heartbeat(std::uint64_t epoch, std::uint64_t sequence) {
+  v1::WatchJobResponse message;
+  message.set_epoch(epoch);
+  message.set_sequence(sequence);
+  return message;
+}
+
+}  // namespace flatlight
