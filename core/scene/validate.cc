@@ -16,9 +16,13 @@ std::string Number(double value) {
   return std::string(buffer, end.ptr);
 }
 
+// Cut to some 60 bytes, not inside a UTF-8 character: the API's strings must be UTF-8.
 std::string Quoted(const std::string& text) {
   constexpr std::size_t kShown = 60;
-  return '"' + (text.size() <= kShown ? text : text.substr(0, kShown) + "...") + '"';
+  if (text.size() <= kShown) return '"' + text + '"';
+  std::size_t end = kShown;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) --end;
+  return '"' + text.substr(0, end) + "...\"";
 }
 
 std::string Item(const std::string& list, std::size_t index) { return list + "[" + std::to_string(index) + "]"; }
@@ -235,8 +239,10 @@ class Validator {
     }
     const double from = probe.from.value_or(0);
     const double to = probe.to.value_or(1);
-    const bool both = CheckRange(from, 0, 1, path + ".from") & CheckRange(to, 0, 1, path + ".to");
-    if (both && from == to) diagnostics_.Add(path + ".to", "equals from, " + Number(from) + "; they must differ");
+    const bool from_good = CheckRange(from, 0, 1, path + ".from");
+    const bool to_good = CheckRange(to, 0, 1, path + ".to");
+    if (from_good && to_good && from == to)
+      diagnostics_.Add(path + ".to", "equals from, " + Number(from) + "; they must differ");
   }
 
   const SceneDescription& scene_;

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/convert/scene_convert.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "flatlight/v1/scene.pb.h"
+#include "flatlight/v1/scene_service.pb.h"
+
+namespace flatlight {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+constexpr char kRoom[] = R"({"name":"room","plane":{
+  "materials":[{"name":"white","lambertian":{"reflectance":[0.5]}}],
+  "curves":[{"name":"floor","segment":{"a":{"x":-2,"y":0},"b":{"x":2,"y":0}},"material":"white"},
+            {"name":"post","arc":{"center":{"x":0,"y":1},"radius":0.2,"startAngle":0,"sweepAngle":-6},"material":"white",
+             "emission":{"radiance":[1,2,3],"twoSided":true}},
+            {"name":"zigzag","polyline":{"points":[{"x":1,"y":1},{"x":2,"y":1},{"x":2,"y":2}],"closed":true},
+             "material":"white"}]},
+  "probes":[{"name":"on floor","curve":"floor","count":4,"from":0.5,"to":1,"side":"BACK"},
+            {"name":"free","points":[{"position":{"x":0,"y":0.5},"normal":{"x":0,"y":2}}]}]})";
+
+std::vector<std::string> Paths(const Diagnostics& diagnostics) {
+  std::vector<std::string> paths;
+  for (const Diagnostic& mistake : diagnostics.kept()) paths.push_back(mistake.path);
+  return paths;
+}
+
+v1::Scene Room() {
+  v1::Scene proto;
+  Diagnostics diagnostics;
+  EXPECT_NE(SceneFromJson(kRoom, proto, diagnostics), nullptr);
+  EXPECT_THAT(Paths(diagnostics), IsEmpty());
+  return proto;
+}
+
+TEST(SceneConvertTest, BuildsTheSceneThatWasWritten) {
+  Diagnostics diagnostics;
+  const auto scene = SceneFromProto(Room(), diagnostics);
+  ASSERT_NE(scene, nullptr);
+  EXPECT_EQ(scene->name(), "room");
+  EXPECT_EQ(scene->channels(), 3);
+  ASSERT_EQ(scene->curves().size(), 3U);
+  EXPECT_EQ(scene->curves()[0].reflectance, Spectrum::Grey(0.5));
+  EXPECT_FALSE(scene->curves()[0].Emits());
+  EXPECT_TRUE(scene->curves()[1].two_sided);
+  EXPECT_DOUBLE_EQ(scene->frame().radiance_scale * scene->curves()[1].radiance[2], 3);
+  EXPECT_EQ(scene->curves()[2].element_count, 3U);
+  ASSERT_EQ(scene->probes().size(), 2U);
+  ASSERT_EQ(scene->probes()[0].receivers.size(), 4U);
+  EXPECT_DOUBLE_EQ(scene->ToWorld(scene->probes()[0].receivers[0].position).x, 0.25);
+  EXPECT_DOUBLE_EQ(scene->probes()[0].receivers[0].normal.y, -1);
+  EXPECT_DOUBLE_EQ(scene->probes()[1].receivers[0].normal.y, 1);
+}
+
+struct Removal {
+  const char* path;
+  std::function<void(v1::Scene&)> remove;
+};
+
+TEST(SceneConvertTest, NamesWhatIsMissingAndOnlyThat) {
+  const auto curve = [](v1::Scene& scene, int i) { return scene.mutable_plane()->mutable_curves(i); };
+  const auto arc = [&](v1::Scene& scene) { return curve(scene, 1)->mutable_arc(); };
+  const std::vector<Removal> removals = {
+      {"plane", [&](v1::Scene& s) { s.clear_plane(); }},
+      {"plane.materials[0].name",
+       [&](v1::Scene& s) {
+         curve(s, 0);
+         s.mutable_plane()->mutable_materials(0)->clear_name();
+         s.mutable_plane()->add_materials()->CopyFrom(s.plane().materials(0));
+         s.mutable_plane()->mutable_materials(1)->set_name("white");
+       }},
+      {"plane.materials[0]", [&](v1::Scene& s) { s.mutable_plane()->mutable_materials(0)->clear_lambertian(); }},
+      {"plane.materials[0].lambertian.reflectance",
+       [&](v1::Scene& s) { s.mutable_plane()->mutable_materials(0)->mutable_lambertian()->clear_reflectance(); }},
+      {"plane.curves[0]", [&](v1::Scene& s) { curve(s, 0)->clear_segment(); }},
+      {"plane.curves[0].material", [&](v1::Scene& s) { curve(s, 0)->clear_material(); }},
+      {"plane.curves[0].segment.a", [&](v1::Scene& s) { curve(s, 0)->mutable_segment()->clear_a(); }},
+      {"plane.curves[0].segment.b.y", [&](v1::Scene& s) { curve(s, 0)->mutable_segment()->mutable_b()->clear_y(); }},
+      {"plane.curves[1].arc.center", [&](v1::Scene& s) { arc(s)->clear_center(); }},
+      {"plane.curves[1].arc.center.x", [&](v1::Scene& s) { arc(s)->mutable_center()->clear_x(); }},
+      {"plane.curves[1].arc.radius", [&](v1::Scene& s) { arc(s)->clear_radius(); }},
+      {"plane.curves[1].arc.startAngle", [&](v1::Scene& s) { arc(s)->clear_start_angle(); }},
+      {"plane.curves[1].arc.sweepAngle", [&](v1::Scene& s) { arc(s)->clear_sweep_angle(); }},
+      {"plane.curves[1].emission.radiance", [&](v1::Scene& s) { curve(s, 1)->mutable_emission()->clear_radiance(); }},
+      {"plane.curves[2].polyline.points[1].y",
+       [&](v1::Scene& s) { curve(s, 2)->mutable_polyline()->mutable_points(1)->clear_y(); }},
+      {"plane.curves[2].polyline.points", [&](v1::Scene& s) { curve(s, 2)->mutable_polyline()->clear_points(); }},
+      {"probes", [&](v1::Scene& s) { s.clear_probes(); }},
+      {"probes[0].name", [&](v1::Scene& s) { s.mutable_probes(0)->clear_name(); }},
+      {"probes[0].count", [&](v1::Scene& s) { s.mutable_probes(0)->clear_count(); }},
+      {"probes[1]", [&](v1::Scene& s) { s.mutable_probes(1)->clear_points(); }},
+      {"probes[1].points[0].position", [&](v1::Scene& s) { s.mutable_probes(1)->mutable_points(0)->clear_position(); }},
+      {"probes[1].points[0].normal", [&](v1::Scene& s) { s.mutable_probes(1)->mutable_points(0)->clear_normal(); }},
+      {"probes[1].points[0].normal.x",
+       [&](v1::Scene& s) { s.mutable_probes(1)->mutable_points(0)->mutable_normal()->clear_x(); }},
+  };
+  for (const Removal& removal : removals) {
+    v1::Scene proto = Room();
+    removal.remove(proto);
+    Diagnostics diagnostics;
+    EXPECT_EQ(SceneFromProto(proto, diagnostics), nullptr) << removal.path;
+    EXPECT_THAT(Paths(diagnostics), ElementsAre(removal.path));
+  }
+}
+
+TEST(SceneConvertTest, RefusesFieldsOfAnotherVersion) {
+  v1::Scene proto = Room();
+  v1::Curve* const curve = proto.mutable_plane()->mutable_curves(1);
+  curve->GetReflection()->MutableUnknownFields(curve)->AddVarint(99, 1);
+  proto.GetReflection()->MutableUnknownFields(&proto)->AddLengthDelimited(98)->append("x");
+  Diagnostics diagnostics;
+  EXPECT_EQ(SceneFromProto(proto, diagnostics), nullptr);
+  EXPECT_THAT(Paths(diagnostics), ElementsAre("98", "plane.curves[1].99"));
+}
+
+TEST(SceneConvertTest, RefusesEnumValuesOfAnotherVersion) {
+  v1::Scene proto = Room();
+  proto.mutable_probes(0)->set_side(static_cast<v1::Probe::Side>(7));
+  Diagnostics diagnostics;
+  EXPECT_EQ(SceneFromProto(proto, diagnostics), nullptr);
+  ASSERT_THAT(Paths(diagnostics), ElementsAre("probes[0].side"));
+  EXPECT_THAT(diagnostics.kept()[0].message, HasSubstr("7"));
+  EXPECT_THAT(diagnostics.kept()[0].message, HasSubstr("FRONT, BACK"));
+}
+
+TEST(SceneConvertTest, ReportsMistakesOfFormAndOfMeaningTogether) {
+  v1::Scene proto;
+  Diagnostics diagnostics;
+  EXPECT_EQ(SceneFromJson(R"({"name":"eight","plane":{
+      "materials":[{"name":"white","lambertian":{"reflectance":[1.5]}}],
+      "curves":[{"name":"floor","segment":{"a":{"x":0,"y":0},"b":{"x":0,"y":0}},"material":"white"},
+                {"name":"lamp","segment":{"a":{"x":"1","y":1},"b":{"x":0,"y":1}},"material":"wite",
+                 "emission":{"radiance":[-5]}},
+                {"name":"lamp","arc":{"center":{"x":0,"y":0},"radius":null,"startAngle":0},"material":"white"}]},
+      "probes":[{"name":"p","curve":"flor","count":0,"form":0.5}]})",
+                          proto, diagnostics),
+            nullptr);
+  EXPECT_THAT(
+      Paths(diagnostics),
+      UnorderedElementsAre("plane.materials[0].lambertian.reflectance[0]", "plane.curves[0].segment",
+                           "plane.curves[1].segment.a.x", "plane.curves[1].material",
+                           "plane.curves[1].emission.radiance[0]", "plane.curves[2].name", "plane.curves[2].arc.radius",
+                           "plane.curves[2].arc.sweepAngle", "probes[0].curve", "probes[0].count", "probes[0].form"));
+}
+
+// What follows from a mistake is not reported as another.
+TEST(SceneConvertTest, OneMistakeIsReportedOnce) {
+  const std::string material = R"("materials":[{"name":"white","lambertian":{"reflectance":[0.5]}}])";
+  const std::string floor = R"({"name":"floor","segment":{"a":{"x":0,"y":0},"b":{"x":1,"y":0}},"material":"white"})";
+  const std::string probe = R"("probes":[{"name":"p","curve":"floor","count":4}])";
+  const auto scene = [&](const std::string& plane, const std::string& probes) {
+    return "{\"plane\":{" + plane + "}," + probes + "}";
+  };
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"{\"plain\":{}," + probe + "}", "plain"},
+      {"[]", "scene"},
+      {scene(R"("material":[],"curves":[)" + floor + "]", probe), "plane.material"},
+      {scene(R"("materials":{},"curves":[)" + floor + "]", probe), "plane.materials"},
+      {scene(R"("materials":[{"nmae":"white","lambertian":{"reflectance":[0.5]}}],"curves":[)" + floor + "]", probe),
+       "plane.materials[0].nmae"},
+      {scene(R"("materials":["white"],"curves":[)" + floor + "]", probe), "plane.materials[0]"},
+      {scene(R"("materials":[{"name":"white","lambertain":{"reflectance":[0.5]}}],"curves":[)" + floor + "]", probe),
+       "plane.materials[0].lambertain"},
+      {scene(R"("materials":[{"name":"white","lambertian":{"reflectance":0.5}}],"curves":[)" + floor + "]", probe),
+       "plane.materials[0].lambertian.reflectance"},
+      {scene(R"("materials":[{"name":"white","lambertian":{"reflektance":[0.5]}}],"curves":[)" + floor + "]", probe),
+       "plane.materials[0].lambertian.reflektance"},
+      {scene(material + R"(,"curve":[)" + floor + "]", probe), "plane.curve"},
+      {scene(material + R"(,"curves":[{"name":"floor","segmnet":{},"material":"white"}])", probe),
+       "plane.curves[0].segmnet"},
+      {scene(material + R"(,"curves":[{"name":"floor"," segment":{},"material":"white"}])", probe),
+       "plane.curves[0][\" segment\"]"},
+      {scene(material + R"(,"curves":[{"name":"floor","segment":[0,0,1,0],"material":"white"}])", probe),
+       "plane.curves[0].segment"},
+      {scene(material + R"(,"curves":[{"name":"floor","segment":{"A":{"x":0,"y":0},"b":{"x":1,"y":0}},
+          "material":"white"}])",
+             probe),
+       "plane.curves[0].segment.A"},
+      {scene(material + R"(,"curves":[{"Name":"floor","segment":{"a":{"x":0,"y":0},"b":{"x":1,"y":0}},
+          "material":"white"}])",
+             probe),
+       "plane.curves[0].Name"},
+      {scene(material + ",\"curves\":[" + floor + "]", R"("prober":[])"), "prober"},
+      {scene(material + ",\"curves\":[" + floor + "]", R"("probes":[{"name":"p","curv":"floor","count":4}])"),
+       "probes[0].curv"},
+      {scene(material + ",\"curves\":[" + floor + "]", R"("probes":[{"name":"p","curve":5,"count":4,"from":0.5}])"),
+       "probes[0].curve"},
+      {scene(material + ",\"curves\":[" + floor + "]", R"("probes":[{"name":"p","curve":"floor","count":"4"}])"),
+       "probes[0].count"},
+      {scene(material + ",\"curves\":[" + floor + "]",
+             R"("probes":[{"name":"p","points":[{"position":{"x":0,"y":1},"normal":"up"}]}])"),
+       "probes[0].points[0].normal"},
+  };
+  for (const auto& [json, path] : cases) {
+    v1::Scene proto;
+    Diagnostics diagnostics;
+    EXPECT_EQ(SceneFromJson(json, proto, diagnostics), nullptr);
+    EXPECT_THAT(Paths(diagnostics), ElementsAre(path)) << json;
+  }
+}
+
+TEST(SceneConvertTest, ManyMistakesOfFormEndTheSearch) {
+  std::string json = R"({"probes":[1)";
+  for (int i = 0; i < 2000; ++i) json += ",1";
+  v1::Scene proto;
+  Diagnostics diagnostics;
+  EXPECT_EQ(SceneFromJson(json + "]}", proto, diagnostics), nullptr);
+  EXPECT_EQ(diagnostics.count(), 2001U);
+}
+
+// A name is shown in part, and never cut inside a character: whoever receives such a message would refuse it.
+TEST(SceneConvertTest, MessagesStayUtf8) {
+  for (int shift = 0; shift < 4; ++shift) {
+    std::string name(static_cast<std::size_t>(shift), 'x');
+    for (int i = 0; i < 50; ++i) name += "\xe2\x82\xac";
+    v1::Scene proto = Room();
+    proto.mutable_plane()->mutable_curves(0)->set_material(name);
+    proto.mutable_plane()->mutable_materials(0)->set_name(name + "y");
+    Diagnostics diagnostics;
+    EXPECT_EQ(SceneFromProto(proto, diagnostics), nullptr);
+    v1::Diagnostic sent;
+    sent.set_message(diagnostics.kept().at(0).message);
+    v1::Diagnostic received;
+    EXPECT_TRUE(received.ParseFromString(sent.SerializeAsString())) << shift;
+  }
+}
+
+}  // namespace
+}  // namespace flatlight
