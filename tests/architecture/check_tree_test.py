@@ -178,6 +178,12 @@ class CheckTreeTest(unittest.TestCase):
     def test_file_that_nobody_compiles(self):
         self.expect("no CMakeLists.txt names this file", {"tests/core/math/old_test.cc": source()})
 
+    def test_header_without_a_target(self):
+        self.expect(
+            "no target is in the folder of this header",
+            {"tests/support/status.h": header("tests/support/status.h", '"core/math/vec.h"')},
+        )
+
     def test_wrong_include_guard(self):
         self.expect(
             "FLATLIGHT_CORE_SPACE_SPACE_H_", {"core/space/space.h": header("core/plane/space.h")}
