@@ -7,16 +7,16 @@
 
 namespace flatlight {
 
-// Values at the points of one probe, in world units. Arrays are flat (point, then channel); one that was not asked for, or
-// that the method does not give, is empty.
+// Values at the points of one probe, in world units. Arrays are flat (point, then channel); one that was not asked for,
+// or that the method does not give, is empty.
 struct ProbeField {
   std::vector<double> irradiance;      // W/m
   std::vector<double> standard_error;  // W/m
   std::vector<double> gradient;        // W/m^2
   std::vector<double> gradient_error;
-  std::vector<double> hessian;         // W/m^3
+  std::vector<double> hessian;  // W/m^3
   std::vector<double> hessian_error;
-  std::vector<double> samples;         // Paths; one value a point.
+  std::vector<double> samples;  // Paths; one value a point.
 };
 
 // The state of a rendering: cumulative, a newer one replaces an older one.

@@ -3,7 +3,9 @@
 #ifndef FLATLIGHT_CORE_RENDER_PLAN_H_
 #define FLATLIGHT_CORE_RENDER_PLAN_H_
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,16 +32,25 @@ struct PlanPass {
 };
 
 struct Plan {
-  // Settings as they apply: method, derivatives, seed and (for path tracing) samples are always there; samples is absent
-  // if the end is left to target_error or time_limit.
+  // Settings as they apply: method, derivatives, seed and (for path tracing) samples are always there; samples is
+  // absent if the end is left to target_error or time_limit.
   Settings settings;
   std::vector<SkipEntry> skips;
   std::vector<PlanPass> passes;
   std::string summary;
 
-  bool Takes(const std::string& skip) const {
+  bool Takes(const std::string& skip) const { return Decided(skip, SkipDecision::kTaken); }
+  bool Disables(const std::string& skip) const { return Decided(skip, SkipDecision::kDisabled); }
+  // Threads to use at most; executors have their own limit.
+  int MaxThreads() const {
+    constexpr std::uint32_t kMost = std::numeric_limits<int>::max();
+    return static_cast<int>(std::min(settings.threads.value_or(kMost), kMost));
+  }
+
+ private:
+  bool Decided(const std::string& skip, SkipDecision decision) const {
     for (const SkipEntry& entry : skips)
-      if (entry.name == skip) return entry.decision == SkipDecision::kTaken;
+      if (entry.name == skip) return entry.decision == decision;
     return false;
   }
 };

@@ -17,8 +17,8 @@ namespace flatlight {
 
 enum class EndReason : std::uint8_t { kConverged, kSamplesDone, kTargetReached, kTimeLimit };
 
-// How far a rendering has come is a function of the blocks done, never of who did them: for equal blocks done the field has
-// equal bits, whatever the threads, the slices and the budgets were.
+// How far a rendering has come is a function of the blocks done, never of who did them: for equal blocks done the field
+// has equal bits, whatever the threads, the slices and the budgets were.
 class Rendering {
  public:
   virtual ~Rendering() = default;

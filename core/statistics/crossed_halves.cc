@@ -6,18 +6,9 @@
 namespace flatlight {
 namespace {
 
-// The means of one half, estimated channel by channel.
-std::vector<MeanEstimate> HalfEstimates(std::span<const double> replicate_means, std::size_t half) {
-  std::vector<MeanEstimate> estimates;
-  for (std::size_t first = half * kHalfReplicates; first < replicate_means.size(); first += kReplicates) {
-    estimates.push_back(EstimateMean(replicate_means.subspan(first, kHalfReplicates)));
-  }
-  return estimates;
-}
-
-bool GoodEnough(const std::vector<MeanEstimate>& estimates, double samples, const CrossedHalves::Target& target) {
+bool GoodEnough(const CrossedHalves::HalfEstimate& estimates, double samples, const CrossedHalves::Target& target) {
   const bool dark = std::all_of(estimates.begin(), estimates.end(),
-                                [](const MeanEstimate& e) { return e.mean == 0 && e.variance == 0; });
+                                [](const MeanEstimate& e) { return e.mean == 0 && e.StandardError() == 0; });
   if (dark) return samples >= CrossedHalves::kSamplesBeforeDarkness;
   for (std::size_t c = 0; c < estimates.size(); ++c) {
     const double error = estimates[c].StandardError();
@@ -28,10 +19,8 @@ bool GoodEnough(const std::vector<MeanEstimate>& estimates, double samples, cons
 
 }  // namespace
 
-void CrossedHalves::Offer(std::span<const double> replicate_means, double samples,
+void CrossedHalves::Offer(const std::array<HalfEstimate, 2>& halves, double samples,
                           const std::array<Target, 2>& targets) {
-  std::array<std::vector<MeanEstimate>, 2> halves = {HalfEstimates(replicate_means, 0),
-                                                     HalfEstimates(replicate_means, 1)};
   for (std::size_t half = 0; half < 2; ++half) {
     const std::size_t other = 1 - half;
     if (decided_[half] || !GoodEnough(halves[other], samples, targets[other])) continue;
@@ -41,8 +30,12 @@ void CrossedHalves::Offer(std::span<const double> replicate_means, double sample
   }
 }
 
-MeanEstimate CrossedHalves::Estimate(std::size_t channel) const {
-  return Average(values_[0][channel], values_[1][channel]);
+MeanEstimate CrossedHalves::Estimate(const std::array<HalfEstimate, 2>& current, std::size_t channel) const {
+  return Average((decided_[0] ? values_ : current)[0][channel], (decided_[1] ? values_ : current)[1][channel]);
+}
+
+double CrossedHalves::Samples(double current) const {
+  return ((decided_[0] ? samples_[0] : current) + (decided_[1] ? samples_[1] : current)) / 2;
 }
 
 }  // namespace flatlight

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "core/statistics/replicates.h"
@@ -24,26 +23,28 @@ class CrossedHalves {
     double relative = 0;
     std::vector<double> floor;  // One a channel.
   };
+  using HalfEstimate = std::vector<MeanEstimate>;  // One a channel.
 
   // A half without a single bright sample says nothing about how rare those are: it doesn't decide before this number
   // of samples of the whole point.
   static constexpr double kSamplesBeforeDarkness = 4096;
 
-  // Offers the means of all replicates (channel after channel, kReplicates each) after `samples` samples of the whole
-  // point. targets[h] judges half h, and may depend on data of that half only.
-  void Offer(std::span<const double> replicate_means, double samples, const std::array<Target, 2>& targets);
+  // Offers both halves after `samples` samples of the whole point. targets[h] judges half h, and may depend on data of
+  // that half only.
+  void Offer(const std::array<HalfEstimate, 2>& halves, double samples, const std::array<Target, 2>& targets);
 
   bool decided() const { return decided_[0] && decided_[1]; }
-  // Of the values the estimate uses. Requires decided().
-  double samples() const { return (samples_[0] + samples_[1]) / 2; }
-  MeanEstimate Estimate(std::size_t channel) const;
+  // The average of the halves: of the values they were decided with, or else of the current ones.
+  MeanEstimate Estimate(const std::array<HalfEstimate, 2>& current, std::size_t channel) const;
+  // Samples behind that estimate, if the current values have `current` samples.
+  double Samples(double current) const;
   // Forgets the decisions; the next Offer brings later counts.
   void Reopen() { decided_ = {}; }
 
  private:
   std::array<bool, 2> decided_{};
   std::array<double, 2> samples_{};
-  std::array<std::vector<MeanEstimate>, 2> values_;  // By half, then channel.
+  std::array<HalfEstimate, 2> values_;
 };
 
 }  // namespace flatlight

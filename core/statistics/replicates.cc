@@ -14,11 +14,11 @@ constexpr double kRounding = 32 * 0x1p-53;
 }  // namespace
 
 double MeanEstimate::StandardError() const {
-  const double spread = std::sqrt(variance * degrees_of_freedom / (degrees_of_freedom - 2));
+  const double spread = std::sqrt(variance * degrees_of_freedom / (degrees_of_freedom - 2) + unresolved * unresolved);
   return std::max(spread, kRounding * std::abs(mean));
 }
 
-MeanEstimate EstimateMean(std::span<const double> values) {
+MeanEstimate EstimateMean(std::span<const double> values, double step) {
   const auto n = static_cast<double>(values.size());
   double sum = 0;
   for (const double x : values) sum += x;
@@ -28,6 +28,7 @@ MeanEstimate EstimateMean(std::span<const double> values) {
   for (const double x : values) squares += (x - estimate.mean) * (x - estimate.mean);
   estimate.variance = squares / ((n - 1) * n);
   estimate.degrees_of_freedom = n - 1;
+  estimate.unresolved = step / (n + 1);
   return estimate;
 }
 
@@ -35,6 +36,7 @@ MeanEstimate Average(const MeanEstimate& a, const MeanEstimate& b) {
   MeanEstimate average;
   average.mean = (a.mean + b.mean) / 2;
   average.variance = (a.variance + b.variance) / 4;
+  average.unresolved = std::sqrt(a.unresolved * a.unresolved + b.unresolved * b.unresolved) / 2;
   const double sum = a.variance + b.variance;
   const double weights =
       a.variance * (a.variance / a.degrees_of_freedom) + b.variance * (b.variance / b.degrees_of_freedom);

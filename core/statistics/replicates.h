@@ -18,13 +18,18 @@ struct MeanEstimate {
   double mean = 0;
   double variance = 0;
   double degrees_of_freedom = 1;
+  double unresolved = 0;  // Standard error of what all values may have missed alike, added in quadrature.
 
   // (mean - truth) / standard error has variance 1: the t distribution of nu degrees of freedom, which the plain ratio
   // follows if the values are normal, has variance nu / (nu - 2). Never below the rounding of the sums behind the mean.
   double StandardError() const;
 };
 
-MeanEstimate EstimateMean(std::span<const double> values);
+// `step` is what one sample of a value, had it fallen to the other side of an edge, would change that value. Stratified
+// samples place an edge to within one sample, so values may all agree and all be wrong by part of a step. If k of n
+// values lie on the other side, Laplace's rule puts the share of such values at (k + 1) / (n + 2) and never at 0: to
+// agree among n values leaves an error of about step / (n + 1).
+MeanEstimate EstimateMean(std::span<const double> values, double step);
 
 // The plain average of two independent estimates. Its degrees of freedom are those of Welch (1947).
 MeanEstimate Average(const MeanEstimate& a, const MeanEstimate& b);

@@ -44,11 +44,8 @@ std::size_t EmitterSampler::DropUnseen() {
   const auto unseen = [this](const Piece& piece) {
     for (const Probe& probe : scene_->probes()) {
       for (const Receiver& receiver : probe.receivers) {
-        Vertex vertex;
-        vertex.at = {receiver.position, receiver.element};
-        vertex.normal = receiver.normal;
-        if (receiver.element != ElementId::kNone) vertex.carrier = scene_->element(receiver.element).carrier;
-        if (RangeOf(piece.element, piece.sides, vertex).kind != EmitterRange::Kind::kNone) return false;
+        if (RangeOf(piece.element, piece.sides, VertexAt(*scene_, receiver)).kind != EmitterRange::Kind::kNone)
+          return false;
       }
     }
     return true;
@@ -60,6 +57,20 @@ std::size_t EmitterSampler::DropUnseen() {
     piece_of_element_[static_cast<std::size_t>(pieces_[i].id)] = static_cast<std::uint32_t>(i);
   }
   return before - pieces_.size();
+}
+
+Spectrum EmitterSampler::Unblocked(const Vertex& vertex) const {
+  Spectrum sum;
+  Spectrum brightest;
+  for (const Piece& piece : pieces_) {
+    const EmitterRange range = RangeOf(piece.element, piece.sides, vertex);
+    if (range.kind == EmitterRange::Kind::kNone) continue;
+    sum = sum + range.width * piece.radiance;
+    for (int c = 0; c < kMaxChannels; ++c) brightest[c] = std::max(brightest[c], piece.radiance[c]);
+  }
+  // Emitters in one direction hide each other: all directions at the largest radiance are the most there can be.
+  for (int c = 0; c < kMaxChannels; ++c) sum[c] = std::min(sum[c], 2 * brightest[c]);
+  return sum;
 }
 
 EmitterSampler::View::View(const EmitterSampler& sampler, const Vertex& vertex) : sampler_(sampler), vertex_(vertex) {

@@ -38,6 +38,9 @@ class EmitterSampler {
   // wanted. Returns how many were left out.
   std::size_t DropUnseen();
 
+  // Irradiance from all pieces if nothing blocked them; a guess for arcs seen partly from inside.
+  Spectrum Unblocked(const Vertex& vertex) const;
+
   bool empty() const { return pieces_.empty(); }
   // Whether emitters are weighed at every vertex.
   bool weighs() const { return pieces_.size() <= kMostWeighed; }

@@ -41,6 +41,10 @@ PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracin
   }
 }
 
+Spectrum PathTracer::DirectStep(const Receiver& receiver) const {
+  return options_.assume_visible ? Spectrum{} : emitters_.Unblocked(VertexAt(scene_, receiver));
+}
+
 void PathTracer::AddPath(const Receiver& receiver, const SampleStream& stream, std::uint32_t index,
                          const Cancellation& cancellation, std::span<double> irradiance, double& rays) const {
   if (emitters_.empty()) return;
@@ -61,11 +65,7 @@ void PathTracer::AddPathOf(const Receiver& receiver, const SampleStream& stream,
     for (std::size_t c = 0; c < kChannels; ++c) value[c] += weight[c] * (factor * radiance.value[c]);
   };
   const std::uint32_t last_depth = options_.max_bounces.value_or(std::numeric_limits<std::uint32_t>::max());
-  Vertex vertex;
-  vertex.at = {receiver.position, receiver.element};
-  vertex.normal = receiver.normal;
-  if (receiver.element != ElementId::kNone) vertex.carrier = scene_.element(receiver.element).carrier;
-
+  Vertex vertex = VertexAt(scene_, receiver);
   for (std::uint32_t depth = 0; !cancellation.cancelled(); ++depth) {
     const bool last = depth == last_depth;
     const SamplePair random = stream.Pair(index, depth);

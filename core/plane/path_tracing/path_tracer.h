@@ -38,6 +38,10 @@ class PathTracer {
   // 1 or 3.
   int channels() const { return channels_; }
 
+  // What the emitters would give the receiver if nothing blocked them, 0 if nothing can block them: the most by which
+  // finding a ray blocked or not can change a sample of direct light.
+  Spectrum DirectStep(const Receiver& receiver) const;
+
   // Adds the estimate of one path to `irradiance` (channels() values, normalised), and the rays cast to `rays`. The
   // path is a function of the receiver and of stream and index. Stops early, with a value of no use, if cancelled.
   void AddPath(const Receiver& receiver, const SampleStream& stream, std::uint32_t index,

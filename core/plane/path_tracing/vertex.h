@@ -7,6 +7,7 @@
 
 #include "core/math/vec.h"
 #include "core/plane/ray_caster.h"
+#include "core/scene/scene.h"
 
 namespace flatlight {
 
@@ -22,6 +23,14 @@ struct Vertex {
   Vector2 Tangent() const { return Right(normal); }
   Vector2 Direction(double sine, double cosine) const { return sine * Tangent() + cosine * normal; }
 };
+
+inline Vertex VertexAt(const Scene& scene, const Receiver& receiver) {
+  Vertex vertex;
+  vertex.at = {receiver.position, receiver.element};
+  vertex.normal = receiver.normal;
+  if (receiver.element != ElementId::kNone) vertex.carrier = scene.element(receiver.element).carrier;
+  return vertex;
+}
 
 // The non-negative cosine of an angle of known sine.
 inline double CosineOf(double sine) { return std::sqrt((1 - sine) * (1 + sine)); }

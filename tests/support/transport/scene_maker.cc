@@ -68,7 +68,7 @@ std::shared_ptr<const Scene> SceneMaker::Build() const {
   return scene;
 }
 
-SceneMaker SquareRoom(const SceneMaker::Look& look, std::uint32_t points_per_wall) {
+SceneMaker SquareRoom(const Look& look, std::uint32_t points_per_wall) {
   SceneMaker maker;
   maker.Segment("floor", {-1, -1}, {1, -1}, look);
   maker.Segment("right", {1, -1}, {1, 1}, look);

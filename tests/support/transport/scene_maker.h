@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/math/vec.h"
 #include "core/scene/description.h"
@@ -13,16 +14,17 @@
 
 namespace flatlight {
 
+// Black and dark unless said otherwise.
+struct Look {
+  SpectrumValues reflectance = {0};
+  SpectrumValues radiance = {};  // Empty: does not emit.
+  bool two_sided = false;
+};
+
 // Collects curves and probes; Build stops the program if they make no valid scene. Each curve has a material of its
 // own.
 class SceneMaker {
  public:
-  struct Look {
-    SpectrumValues reflectance = {0};
-    SpectrumValues radiance = {};  // Empty: does not emit.
-    bool two_sided = false;
-  };
-
   // The front is on the left of a -> b.
   SceneMaker& Segment(const std::string& name, Point2 a, Point2 b, const Look& look = {});
   SceneMaker& Polyline(const std::string& name, std::vector<Point2> points, bool closed, const Look& look = {});
@@ -40,7 +42,7 @@ class SceneMaker {
 };
 
 // A square room of side 2 around the origin, walls alike, their fronts inside; probes on all four walls.
-SceneMaker SquareRoom(const SceneMaker::Look& look, std::uint32_t points_per_wall);
+SceneMaker SquareRoom(const Look& look, std::uint32_t points_per_wall);
 
 // A floor from (0,0) to (1,0), unit light of radiance 1 above it at height 1, facing down; black. (THEORY 16)
 SceneMaker UnitLight();

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_RENDER_EXACT_RENDERING_H_
+#define FLATLIGHT_CORE_RENDER_EXACT_RENDERING_H_
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/plane/bvh.h"
+#include "core/plane/exact/exact.h"
+#include "core/render/rendering.h"
+
+namespace flatlight {
+
+// Direct light in closed form, point after point. A probe appears in the field when all its points are done.
+class ExactRendering final : public Rendering {
+ public:
+  ExactRendering(std::shared_ptr<const Scene> scene, const Plan& plan);
+
+  void Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
+               Clock::Duration budget) override;
+  bool done() const override { return done_points_ == points_.size(); }
+  EndReason end_reason() const override { return EndReason::kConverged; }
+  RenderProgress Progress() const override;
+  std::shared_ptr<const Field> Snapshot() const override;
+
+ private:
+  // Evaluates [first, last); false if cancelled.
+  bool Work(std::size_t first, std::size_t last, const Cancellation& cancellation);
+
+  std::shared_ptr<const Scene> scene_;
+  Bvh bvh_;
+  ExactOptions options_;
+  int derivatives_;  // Asked for, whatever is computed.
+  bool dark_;        // Nothing emits: the values are there already.
+  int max_threads_;
+  std::vector<const Receiver*> points_;
+  std::vector<ExactValue> values_;  // By point.
+  std::size_t done_points_ = 0;     // From the first on.
+  double points_per_shard_ = 1;     // Measured; leaves no trace in results.
+  double elapsed_seconds_ = 0;      // In Advance.
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_RENDER_EXACT_RENDERING_H_

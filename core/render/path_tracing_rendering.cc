@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/path_tracing_rendering.h"
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/plane/path_tracing/path_tracer.h"
+#include "core/render/probe_points.h"
+#include "core/render/skips.h"
+
+namespace flatlight {
+namespace {
+
+class PathSampler final : public PointSampler {
+ public:
+  PathSampler(std::shared_ptr<const Scene> scene, const PathTracingOptions& options, std::uint32_t seed)
+      : scene_(std::move(scene)),
+        points_(PointsOfProbes(*scene_)),
+        tracer_(std::make_shared<const RayCaster>(scene_), options),
+        seed_(seed) {}
+
+  std::size_t channels() const override { return static_cast<std::size_t>(tracer_.channels()); }
+
+  void Steps(std::size_t point, std::span<double> steps) const override {
+    const Spectrum step = tracer_.DirectStep(*points_[point]);
+    for (std::size_t c = 0; c < steps.size(); ++c) steps[c] = step.value[c];
+  }
+
+  void AddBlock(std::size_t point, std::uint32_t block, const Cancellation& cancellation, std::span<double> sums,
+                double& rays) const override {
+    std::array<double, kMaxChannels> value{};
+    for (std::size_t replicate = 0; replicate < kReplicates; ++replicate) {
+      value.fill(0);
+      const SampleStream stream(seed_, point, replicate);
+      tracer_.AddPath(*points_[point], stream, block, cancellation, std::span(value).first(channels()), rays);
+      for (std::size_t c = 0; c < channels(); ++c) sums[c * kReplicates + replicate] += value[c];
+    }
+  }
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  std::vector<const Receiver*> points_;
+  PathTracer tracer_;
+  std::uint32_t seed_;
+};
+
+// No emitter, no light.
+class DarkSampler final : public PointSampler {
+ public:
+  std::size_t channels() const override { return 1; }
+  void Steps(std::size_t, std::span<double> steps) const override { steps[0] = 0; }
+  void AddBlock(std::size_t, std::uint32_t, const Cancellation&, std::span<double>, double&) const override {}
+};
+
+std::unique_ptr<const PointSampler> MakeSampler(std::shared_ptr<const Scene> scene, const Plan& plan) {
+  if (plan.Takes(skip::kEmission)) return std::make_unique<DarkSampler>();
+  PathTracingOptions options;
+  options.max_bounces = plan.settings.max_bounces;
+  if (plan.Takes(skip::kBounces)) options.max_bounces = 0;
+  options.one_channel = plan.Takes(skip::kColour);
+  options.assume_visible = plan.Takes(skip::kVisibility);
+  options.end_black_paths = plan.Takes(skip::kBlackPaths);
+  options.drop_unseen_emitters = plan.Takes(skip::kUnseenEmitters);
+  return std::make_unique<PathSampler>(std::move(scene), options, plan.settings.seed.value_or(0));
+}
+
+SamplingGoal GoalOf(const Plan& plan) {
+  SamplingGoal goal;
+  goal.samples = plan.settings.samples;
+  goal.target_error = plan.settings.target_error;
+  goal.time_limit = plan.settings.time_limit;
+  goal.skip_converged = !plan.Disables(skip::kConvergedPoints);
+  return goal;
+}
+
+}  // namespace
+
+PathTracingRendering::PathTracingRendering(std::shared_ptr<const Scene> scene, const Plan& plan)
+    : scene_(std::move(scene)),
+      max_threads_(plan.MaxThreads()),
+      sampling_(MakeSampler(scene_, plan), EndsOfProbes(*scene_), GoalOf(plan)) {}
+
+void PathTracingRendering::Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
+                                   Clock::Duration budget) {
+  sampling_.Advance(executor, max_threads_, cancellation, clock, budget);
+}
+
+std::shared_ptr<const Field> PathTracingRendering::Snapshot() const {
+  auto field = std::make_shared<Field>();
+  field->rays = sampling_.rays();
+  const auto channels = static_cast<std::size_t>(scene_->channels());
+  const double scale = scene_->frame().radiance_scale;
+  std::size_t point = 0;
+  for (const Probe& probe : scene_->probes()) {
+    ProbeField values;
+    values.irradiance.reserve(probe.receivers.size() * channels);
+    values.standard_error.reserve(probe.receivers.size() * channels);
+    values.samples.reserve(probe.receivers.size());
+    for (std::size_t i = 0; i < probe.receivers.size(); ++i, ++point) {
+      const ProgressiveSampling::PointValue value = sampling_.Value(point);
+      values.samples.push_back(value.samples);
+      for (std::size_t c = 0; c < channels; ++c) {
+        MeanEstimate estimate;
+        if (value.samples > 0) estimate = value.estimates[ComputedChannel(c, sampling_.channels())];
+        values.irradiance.push_back(scale * estimate.mean);
+        values.standard_error.push_back(value.samples > 0 ? scale * estimate.StandardError() : 0);
+      }
+    }
+    field->probes.push_back(std::move(values));
+  }
+  return field;
+}
+
+}  // namespace flatlight

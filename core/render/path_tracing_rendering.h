@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_RENDER_PATH_TRACING_RENDERING_H_
+#define FLATLIGHT_CORE_RENDER_PATH_TRACING_RENDERING_H_
+
+#include <memory>
+
+#include "core/render/progressive_sampling.h"
+#include "core/render/rendering.h"
+
+namespace flatlight {
+
+// All bounces, by Monte Carlo.
+class PathTracingRendering final : public Rendering {
+ public:
+  PathTracingRendering(std::shared_ptr<const Scene> scene, const Plan& plan);
+
+  void Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
+               Clock::Duration budget) override;
+  bool done() const override { return sampling_.done(); }
+  EndReason end_reason() const override { return sampling_.end_reason(); }
+  RenderProgress Progress() const override { return sampling_.Progress(); }
+  std::shared_ptr<const Field> Snapshot() const override;
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  int max_threads_;
+  ProgressiveSampling sampling_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_RENDER_PATH_TRACING_RENDERING_H_

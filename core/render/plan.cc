@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "core/render/light_paths.h"
+#include "core/render/skips.h"
+
+namespace flatlight {
+namespace {
+
+constexpr std::uint32_t kDefaultSamples = 1024;
+// Paths of a block: samples come in whole ones.
+constexpr double kBlockSamples = 16;
+
+template <typename T>
+std::string Text(const T& value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+std::string Listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+void CheckRanges(const Settings& settings, Diagnostics& diagnostics) {
+  if (settings.samples == 0u) diagnostics.Add("settings.samples", "is 0, must be at least 1");
+  if (settings.threads == 0u) diagnostics.Add("settings.threads", "is 0, must be at least 1");
+  if (settings.target_error.has_value() && !(*settings.target_error > 0 && *settings.target_error <= 1)) {
+    diagnostics.Add("settings.targetError", "is " + Text(*settings.target_error) + ", must be in (0, 1]");
+  }
+  if (settings.time_limit.has_value() && !(*settings.time_limit > 0 && std::isfinite(*settings.time_limit))) {
+    diagnostics.Add("settings.timeLimit", "is " + Text(*settings.time_limit) + " s, must be a number above 0");
+  }
+  for (std::size_t i = 0; i < settings.no_skip.size(); ++i) {
+    const std::vector<std::string>& names = SkipNames();
+    if (std::find(names.begin(), names.end(), settings.no_skip[i]) == names.end()) {
+      diagnostics.Add("settings.noSkip[" + std::to_string(i) + "]",
+                      "\"" + settings.no_skip[i] + "\" is no skip, must be one of " + Listed(names));
+    }
+  }
+}
+
+// Settings that the method would ignore, and scenes that it cannot do. `by_default`: the caller named no method.
+void CheckMethod(const Scene& scene, const Settings& settings, bool by_default, Diagnostics& diagnostics) {
+  if (settings.method == Method::kExact) {
+    const std::string exact =
+        by_default ? "exact, the method for a scene with direct light only (to sample it, ask for path-tracing)"
+                   : "exact";
+    if (settings.samples.has_value()) diagnostics.Add("settings.samples", "does not apply to " + exact);
+    if (settings.seed.has_value()) diagnostics.Add("settings.seed", "does not apply to " + exact);
+    if (settings.target_error.has_value()) diagnostics.Add("settings.targetError", "does not apply to " + exact);
+    if (settings.time_limit.has_value()) diagnostics.Add("settings.timeLimit", "does not apply to " + exact);
+    if (!DirectLightOnly(scene, settings)) {
+      const std::string cure = "set max bounces to 0, or use path-tracing";
+      if (settings.max_bounces.has_value()) {
+        diagnostics.Add("settings.maxBounces", "is " + Text(*settings.max_bounces) +
+                                                   ", but exact gives direct light, and this scene reflects: " + cure);
+      } else {
+        diagnostics.Add("settings.method", "exact gives direct light, and this scene reflects: " + cure);
+      }
+    }
+    return;
+  }
+  if (settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone) {
+    diagnostics.Add("settings.derivatives", "path-tracing gives none: leave this out, or use exact");
+  }
+  if (!settings.max_bounces.has_value() && LightNeverFades(scene)) {
+    diagnostics.Add(
+        "settings.maxBounces",
+        "is absent, but every curve reflects all light and some enclose an area, where light never fades: set "
+        "it, or give a curve a reflectance below 1");
+  }
+}
+
+void FillMethodDefaults(Settings& settings) {
+  if (settings.method == Method::kExact) {
+    if (!settings.derivatives.has_value()) settings.derivatives = Derivatives::kHessian;
+    return;
+  }
+  settings.derivatives = Derivatives::kNone;
+  if (!settings.seed.has_value()) settings.seed = 0;
+  const bool open_ended = settings.target_error.has_value() || settings.time_limit.has_value();
+  if (!settings.samples.has_value() && !open_ended) settings.samples = kDefaultSamples;
+}
+
+// Vertices of a path if all curves reflect as the average one does, weighed by length.
+double ExpectedVertices(const Scene& scene, const Plan& plan) {
+  const double most = plan.Takes(skip::kBounces) ? 0 : plan.settings.max_bounces.value_or(1e9);
+  double length = 0;
+  double reflected = 0;
+  for (const Curve& curve : scene.curves()) {
+    length += curve.length;
+    reflected += curve.length * curve.reflectance.Max();
+  }
+  const double reflectance = length > 0 ? reflected / length : 0;
+  if (reflectance == 1) return std::min(most + 1, 1e6);
+  return (1 - std::pow(reflectance, most + 1)) / (1 - reflectance);
+}
+
+void AddPasses(const Scene& scene, Plan& plan) {
+  PlanPass pass;
+  pass.points = static_cast<double>(scene.traits().probe_points);
+  if (plan.settings.method == Method::kExact) {
+    pass.name = "direct light in closed form";
+  } else {
+    pass.name = "paths from the points";
+    if (plan.settings.samples.has_value())
+      pass.samples = std::ceil(*plan.settings.samples / kBlockSamples) * kBlockSamples;
+    const double rays_per_vertex = plan.Takes(skip::kVisibility) ? 1 : 2;
+    if (!plan.Takes(skip::kEmission)) {
+      pass.expected_rays = pass.points * pass.samples * rays_per_vertex * ExpectedVertices(scene, plan);
+    }
+  }
+  plan.passes.push_back(pass);
+}
+
+std::string Summary(const Scene& scene, const Plan& plan) {
+  const std::size_t points = scene.traits().probe_points;
+  std::string text;
+  if (plan.settings.method == Method::kExact) {
+    text = "Exact direct light";
+    if (plan.settings.derivatives == Derivatives::kGradient) text += " and its gradient";
+    if (plan.settings.derivatives == Derivatives::kHessian) text += " with gradient and Hessian";
+    text += " at ";
+  } else {
+    text = "Path tracing of ";
+    if (plan.settings.max_bounces == 0u || plan.Takes(skip::kBounces)) {
+      text += "direct light";
+    } else if (plan.settings.max_bounces.has_value()) {
+      text += "up to " + Text(*plan.settings.max_bounces) + (*plan.settings.max_bounces == 1 ? " bounce" : " bounces");
+    } else {
+      text += "all bounces";
+    }
+    text += " at ";
+  }
+  text += Text(points) + (points == 1 ? " point" : " points");
+  if (plan.settings.method == Method::kPathTracing) {
+    if (plan.settings.samples.has_value()) text += ", at most " + Text(plan.passes[0].samples) + " paths each";
+    if (plan.settings.target_error.has_value())
+      text += ", until the error is " + Text(100 * *plan.settings.target_error) + " %";
+    if (plan.settings.time_limit.has_value()) text += ", for " + Text(*plan.settings.time_limit) + " s";
+    const bool open_ended = plan.settings.target_error.has_value() || plan.settings.time_limit.has_value();
+    const std::size_t at_most = text.find("at most ");
+    if (!open_ended && at_most != std::string::npos) text.erase(at_most, std::string("at most ").size());
+  }
+  return text + ".";
+}
+
+}  // namespace
+
+const std::vector<std::string>& MethodNames() {
+  static const auto& names = *new std::vector<std::string>{"exact", "path-tracing"};
+  return names;
+}
+
+std::optional<Plan> MakePlan(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
+  const std::size_t before = diagnostics.count();
+  Plan plan;
+  plan.settings = settings;
+  if (!settings.method.has_value()) {
+    plan.settings.method = DirectLightOnly(scene, settings) ? Method::kExact : Method::kPathTracing;
+  }
+  CheckRanges(settings, diagnostics);
+  CheckMethod(scene, plan.settings, !settings.method.has_value(), diagnostics);
+  if (diagnostics.count() != before) return std::nullopt;
+  FillMethodDefaults(plan.settings);
+  plan.skips = DecideSkips(scene, plan.settings);
+  AddPasses(scene, plan);
+  plan.summary = Summary(scene, plan);
+  return plan;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/point_blocks.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+
+namespace flatlight {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+// A shard should last about this long: work is cancelled and paced between shards, threads are kept busy with many.
+constexpr double kShardSeconds = 1e-3;
+constexpr double kMostBlocksPerShard = 4096;
+// Between two merges each thread gets at most this many shards: enough to even out, few enough to hold in memory.
+constexpr double kShardsPerThread = 24;
+
+}  // namespace
+
+PointBlocks::PointBlocks(const PointSampler& sampler, std::size_t points)
+    : sampler_(sampler),
+      channels_(sampler.channels()),
+      trees_(points, BlockTree(sampler.channels() * kReplicates)),
+      steps_(points * sampler.channels()) {}
+
+std::vector<MeanEstimate> PointBlocks::EstimatesOf(std::size_t point, std::size_t first_replicate,
+                                                   std::size_t count) const {
+  std::vector<double> means(trees_[point].width());
+  trees_[point].Total(means);
+  const auto samples = static_cast<double>(trees_[point].blocks());
+  for (double& mean : means) mean /= samples;
+  std::vector<MeanEstimate> estimates;
+  for (std::size_t c = 0; c < channels_; ++c) {
+    const std::span<const double> values(means.data() + c * kReplicates + first_replicate, count);
+    estimates.push_back(EstimateMean(values, steps_[point * channels_ + c] / samples));
+  }
+  return estimates;
+}
+
+std::vector<MeanEstimate> PointBlocks::Estimates(std::size_t point) const { return EstimatesOf(point, 0, kReplicates); }
+
+std::array<CrossedHalves::HalfEstimate, 2> PointBlocks::HalfEstimates(std::size_t point) const {
+  return {EstimatesOf(point, 0, kHalfReplicates), EstimatesOf(point, kHalfReplicates, kHalfReplicates)};
+}
+
+void PointBlocks::SetGoals(std::vector<std::uint64_t> goals) {
+  goals_ = std::move(goals);
+  first_open_ = 0;
+}
+
+bool PointBlocks::Advance(Executor& executor, int max_threads, const Cancellation& cancellation, const Clock& clock,
+                          Clock::Time until) {
+  const int threads = std::max(std::min(max_threads, executor.threads()), 1);
+  while (first_open_ < goals_.size() && blocks(first_open_) >= goals_[first_open_]) ++first_open_;
+  Cursor cursor{first_open_, 0};
+  Clock::Time now = clock.Now();
+  while (!cancellation.cancelled()) {
+    // As many shards as fit into the time left.
+    const double rounds = std::clamp(Seconds(until - now).count() / kShardSeconds, 1.0, kShardsPerThread);
+    const auto wanted = static_cast<std::size_t>(std::floor(rounds) * threads);
+    std::vector<Shard> shards;
+    double cut = 0;
+    while (shards.size() < wanted) {
+      Shard shard = CutShard(cursor);
+      if (shard.pieces.empty()) break;
+      for (const Piece& piece : shard.pieces) cut += std::ldexp(1.0, static_cast<int>(piece.level));
+      shards.push_back(std::move(shard));
+    }
+    if (shards.empty()) return true;
+    executor.ParallelFor(shards.size(), threads, [&](std::size_t i) { Work(shards[i], cancellation); });
+    if (!Merge(shards)) return false;
+    const Clock::Time after = clock.Now();
+    const double used_threads = std::min(static_cast<double>(threads), static_cast<double>(shards.size()));
+    const double seconds_per_block = Seconds(after - now).count() * used_threads / cut;
+    // Grow by steps: a first measurement of tiny shards is mostly overhead.
+    const double best = seconds_per_block > 0 ? kShardSeconds / seconds_per_block : kMostBlocksPerShard;
+    blocks_per_shard_ = std::clamp(std::min(best, 4 * blocks_per_shard_), 1.0, kMostBlocksPerShard);
+    now = after;
+    if (now >= until) {
+      Cursor rest = cursor;
+      return CutShard(rest).pieces.empty();
+    }
+  }
+  return false;
+}
+
+PointBlocks::Shard PointBlocks::CutShard(Cursor& cursor) const {
+  Shard shard;
+  auto room = static_cast<std::uint64_t>(blocks_per_shard_);
+  while (room > 0 && cursor.point < goals_.size()) {
+    const std::uint64_t first = std::max(cursor.block, blocks(cursor.point));
+    const std::uint64_t goal = goals_[cursor.point];
+    if (first >= goal) {
+      ++cursor.point;
+      cursor.block = 0;
+      continue;
+    }
+    const auto max_level = static_cast<unsigned>(std::bit_width(room) - 1);
+    const unsigned level = BlockTree::AlignedLevel(first, goal, max_level);
+    shard.pieces.push_back({cursor.point, first, level});
+    cursor.block = first + (std::uint64_t{1} << level);
+    room -= std::uint64_t{1} << level;
+  }
+  return shard;
+}
+
+void PointBlocks::Work(Shard& shard, const Cancellation& cancellation) const {
+  const std::size_t width = channels_ * kReplicates;
+  std::vector<double> block(width);
+  shard.nodes.resize(shard.pieces.size() * width);
+  for (std::size_t i = 0; i < shard.pieces.size(); ++i) {
+    const Piece& piece = shard.pieces[i];
+    BlockTree tree(width);
+    for (std::uint64_t k = 0; k < (std::uint64_t{1} << piece.level); ++k) {
+      std::fill(block.begin(), block.end(), 0.0);
+      sampler_.AddBlock(piece.point, static_cast<std::uint32_t>(piece.first + k), cancellation, block, shard.rays);
+      if (cancellation.cancelled()) return;
+      tree.Append(0, block);
+    }
+    tree.Total(std::span(shard.nodes).subspan(i * width, width));
+  }
+  shard.complete = true;
+}
+
+bool PointBlocks::Merge(const std::vector<Shard>& shards) {
+  const std::size_t width = channels_ * kReplicates;
+  bool all = true;
+  for (const Shard& shard : shards) {
+    all = all && shard.complete;
+    if (!shard.complete) continue;
+    rays_ += shard.rays;
+    for (std::size_t i = 0; i < shard.pieces.size(); ++i) {
+      const Piece& piece = shard.pieces[i];
+      // Blocks after a gap that an incomplete shard left are done again later.
+      if (blocks(piece.point) != piece.first) continue;
+      if (piece.first == 0) {
+        sampler_.Steps(piece.point, std::span(steps_).subspan(piece.point * channels_, channels_));
+      }
+      trees_[piece.point].Append(piece.level, std::span(shard.nodes).subspan(i * width, width));
+      total_blocks_ += std::ldexp(1.0, static_cast<int>(piece.level));
+    }
+  }
+  return all;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_RENDER_POINT_BLOCKS_H_
+#define FLATLIGHT_CORE_RENDER_POINT_BLOCKS_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/execution/cancellation.h"
+#include "core/execution/clock.h"
+#include "core/execution/executor.h"
+#include "core/render/point_sampler.h"
+#include "core/statistics/block_tree.h"
+#include "core/statistics/crossed_halves.h"
+
+namespace flatlight {
+
+// The blocks done at every point, and the work that adds to them. Where a point's blocks are cut into shards, and who
+// works on them, leaves no trace in the sums.
+class PointBlocks {
+ public:
+  static constexpr std::uint64_t kMostBlocks = std::uint64_t{1} << 31;  // Indices of samples have 32 bits.
+
+  // The sampler must outlive this.
+  PointBlocks(const PointSampler& sampler, std::size_t points);
+
+  std::size_t points() const { return trees_.size(); }
+  std::size_t channels() const { return channels_; }
+  std::uint64_t blocks(std::size_t point) const { return trees_[point].blocks(); }
+  double total_blocks() const { return total_blocks_; }
+  double rays() const { return rays_; }
+
+  // Estimates from all replicates of a point that has blocks, one a channel.
+  std::vector<MeanEstimate> Estimates(std::size_t point) const;
+  // The same for each half.
+  std::array<CrossedHalves::HalfEstimate, 2> HalfEstimates(std::size_t point) const;
+
+  // What to bring each point up to: one number of blocks a point; points that are further stay.
+  void SetGoals(std::vector<std::uint64_t> goals);
+  // Works toward the goals, point after point. Returns true when all are reached, false if `until` has come or work was
+  // cancelled first. Always does something unless cancelled.
+  bool Advance(Executor& executor, int max_threads, const Cancellation& cancellation, const Clock& clock,
+               Clock::Time until);
+
+ private:
+  // The blocks [first, first + 2^level) of a point.
+  struct Piece {
+    std::size_t point = 0;
+    std::uint64_t first = 0;
+    unsigned level = 0;
+  };
+  struct Shard {
+    std::vector<Piece> pieces;
+    std::vector<double> nodes;  // Sums, one node a piece.
+    double rays = 0;
+    bool complete = false;
+  };
+  // The next work in order.
+  struct Cursor {
+    std::size_t point = 0;
+    std::uint64_t block = 0;  // 0: where the point stands.
+  };
+
+  Shard CutShard(Cursor& cursor) const;
+  void Work(Shard& shard, const Cancellation& cancellation) const;
+  // True if everything was complete.
+  bool Merge(const std::vector<Shard>& shards);
+  std::vector<MeanEstimate> EstimatesOf(std::size_t point, std::size_t first_replicate, std::size_t count) const;
+
+  const PointSampler& sampler_;
+  std::size_t channels_;
+  std::vector<BlockTree> trees_;
+  std::vector<std::uint64_t> goals_;
+  std::size_t first_open_ = 0;  // No point before it is short of its goal.
+  std::vector<double> steps_;   // Point, then channel.
+  double total_blocks_ = 0;
+  double rays_ = 0;
+  // How to cut work: measured, without influence on sums.
+  double blocks_per_shard_ = 1;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_RENDER_POINT_BLOCKS_H_

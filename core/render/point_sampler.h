@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_RENDER_POINT_SAMPLER_H_
+#define FLATLIGHT_CORE_RENDER_POINT_SAMPLER_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/execution/cancellation.h"
+#include "core/statistics/replicates.h"
+
+namespace flatlight {
+
+// An unbiased estimator of non-negative values at points, one sample at a time.
+class PointSampler {
+ public:
+  // One sample of each replicate.
+  static constexpr std::size_t kBlockSamples = kReplicates;
+
+  virtual ~PointSampler() = default;
+  virtual std::size_t channels() const = 0;
+  // The largest change of one sample that stratification may hide (see EstimateMean), of each channel.
+  virtual void Steps(std::size_t point, std::span<double> steps) const = 0;
+  // Adds sample `block` of every replicate to `sums` (channel after channel, kReplicates each), and rays cast to
+  // `rays`. A pure function of point and block, safe to call from several threads; of no use once cancelled.
+  virtual void AddBlock(std::size_t point, std::uint32_t block, const Cancellation& cancellation,
+                        std::span<double> sums, double& rays) const = 0;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_RENDER_POINT_SAMPLER_H_

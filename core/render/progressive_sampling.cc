@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/progressive_sampling.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace flatlight {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+// Decisions are never due before 64 samples of a point: smaller samples know too little of their own error.
+constexpr std::uint64_t kFirstTestBlocks = 64 / PointSampler::kBlockSamples;
+// The dimmest that the target error is relative to, in means of the probe (DESIGN 3).
+constexpr double kDarkest = 0.01;
+
+Clock::Time Later(Clock::Time time, Clock::Duration duration) {
+  return duration > Clock::Time::max() - time ? Clock::Time::max() : time + duration;
+}
+
+}  // namespace
+
+ProgressiveSampling::ProgressiveSampling(std::unique_ptr<const PointSampler> sampler,
+                                         std::vector<std::size_t> probe_ends, const SamplingGoal& goal)
+    : sampler_(std::move(sampler)),
+      probe_ends_(std::move(probe_ends)),
+      goal_(goal),
+      most_blocks_(PointBlocks::kMostBlocks),
+      blocks_(*sampler_, probe_ends_.empty() ? 0 : probe_ends_.back()) {
+  if (goal_.samples.has_value()) {
+    most_blocks_ = (*goal_.samples + PointSampler::kBlockSamples - 1) / PointSampler::kBlockSamples;
+  }
+  for (std::size_t probe = 0; probe < probe_ends_.size(); ++probe) probe_of_point_.resize(probe_ends_[probe], probe);
+  if (goal_.target_error.has_value()) {
+    halves_.resize(blocks_.points());
+    if (!goal_.skip_converged) unread_.emplace(*sampler_, blocks_.points());
+  }
+}
+
+void ProgressiveSampling::Advance(Executor& executor, int max_threads, const Cancellation& cancellation,
+                                  const Clock& clock, Clock::Duration budget) {
+  now_ = clock.Now();
+  const Clock::Time until = Later(now_, budget);
+  if (!start_.has_value()) {
+    start_ = now_;
+    PlanRound(now_);
+  }
+  while (!done() && !cancellation.cancelled()) {
+    const bool round_done = blocks_.Advance(executor, max_threads, cancellation, clock, until) &&
+                            (!unread_ || unread_->Advance(executor, max_threads, cancellation, clock, until));
+    now_ = clock.Now();
+    if (!round_done) return;
+    EndRound(now_);
+    if (now_ >= until) return;
+  }
+}
+
+void ProgressiveSampling::EndRound(Clock::Time now) {
+  if (goal_.target_error.has_value() && round_is_whole_) OfferHalves();
+  UpdateWorstError();
+  PlanRound(now);
+}
+
+void ProgressiveSampling::OfferHalves() {
+  const std::size_t points = blocks_.points();
+  if (pilot_means_[0].empty() && points > 0 && blocks_.blocks(0) >= kFirstTestBlocks) {
+    for (const std::size_t half : {0, 1}) {
+      pilot_means_[half] = MeansOverProbes([&](std::size_t point) { return blocks_.HalfEstimates(point)[half]; });
+    }
+  }
+  for (std::size_t point = 0; point < points; ++point) {
+    if (halves_[point].decided() || blocks_.blocks(point) < kFirstTestBlocks) continue;
+    std::array<CrossedHalves::Target, 2> targets;
+    for (std::size_t half = 0; half < 2; ++half) {
+      targets[half].relative = *goal_.target_error;
+      for (std::size_t c = 0; c < channels(); ++c) {
+        targets[half].floor.push_back(kDarkest * pilot_means_[half][probe_of_point_[point] * channels() + c]);
+      }
+    }
+    const double samples = static_cast<double>(blocks_.blocks(point)) * PointSampler::kBlockSamples;
+    halves_[point].Offer(blocks_.HalfEstimates(point), samples, targets);
+  }
+}
+
+bool ProgressiveSampling::ConfirmDecisions() {
+  const ProbeMeans means = CurrentMeans();
+  bool confirmed = true;
+  for (std::size_t point = 0; point < blocks_.points(); ++point) {
+    if (halves_[point].decided() && WorstError(point, means) > *goal_.target_error) halves_[point].Reopen();
+    confirmed = confirmed && halves_[point].decided();
+  }
+  return confirmed;
+}
+
+void ProgressiveSampling::PlanRound(Clock::Time now) {
+  const std::size_t points = blocks_.points();
+  if (goal_.target_error.has_value() && blocks_.total_blocks() > 0 && ConfirmDecisions()) {
+    end_reason_ = EndReason::kTargetReached;
+    return;
+  }
+  std::vector<std::uint64_t> goals(points);
+  double added = 0;   // By the round.
+  double active = 0;  // Points that go on.
+  for (std::size_t point = 0; point < points; ++point) {
+    const std::uint64_t blocks = blocks_.blocks(point);
+    const bool goes_on = blocks < most_blocks_ && Active(point);
+    goals[point] = goes_on ? std::min(std::max(2 * blocks, std::uint64_t{1}), most_blocks_) : blocks;
+    added += static_cast<double>(goals[point] - blocks);
+    active += goes_on ? 1 : 0;
+  }
+  if (active == 0) {
+    end_reason_ = EndReason::kSamplesDone;
+    return;
+  }
+  round_is_whole_ = true;
+  if (goal_.time_limit.has_value() && blocks_.total_blocks() > 0) {
+    // A round may take half of the time left; the last ones add one block a point, while the time allows.
+    const double left = *goal_.time_limit - Seconds(now - *start_).count();
+    const double seconds_per_block =
+        Seconds(now - round_start_).count() / (blocks_.total_blocks() - round_start_blocks_);
+    const double affordable = left > 0 ? left / std::max(seconds_per_block, 1e-12) : 0;
+    if (affordable < active) {
+      end_reason_ = EndReason::kTimeLimit;
+      return;
+    }
+    if (added > affordable / 2) {
+      round_is_whole_ = false;
+      const double share = affordable / 2 / added;
+      for (std::size_t point = 0; point < points; ++point) {
+        const std::uint64_t blocks = blocks_.blocks(point);
+        const double more = std::floor(share * static_cast<double>(goals[point] - blocks));
+        if (goals[point] > blocks) goals[point] = blocks + std::max(static_cast<std::uint64_t>(more), std::uint64_t{1});
+      }
+    }
+  }
+  if (unread_.has_value()) {
+    const std::uint64_t most = *std::max_element(goals.begin(), goals.end());
+    std::vector<std::uint64_t> unread_goals(points);
+    for (std::size_t point = 0; point < points; ++point) unread_goals[point] = Active(point) ? 0 : most;
+    unread_->SetGoals(std::move(unread_goals));
+  }
+  round_start_ = now;
+  round_start_blocks_ = blocks_.total_blocks();
+  blocks_.SetGoals(std::move(goals));
+}
+
+void ProgressiveSampling::UpdateWorstError() {
+  const ProbeMeans means = CurrentMeans();
+  double worst = 0;
+  for (std::size_t point = 0; point < blocks_.points(); ++point) worst = std::max(worst, WorstError(point, means));
+  worst_error_.reset();
+  if (std::isfinite(worst)) worst_error_ = worst;
+}
+
+double ProgressiveSampling::WorstError(std::size_t point, const ProbeMeans& means) const {
+  const PointValue value = Value(point);
+  double worst = 0;
+  for (std::size_t c = 0; c < channels(); ++c) {
+    const double floor = kDarkest * means[probe_of_point_[point] * channels() + c];
+    const MeanEstimate& estimate = value.estimates[c];
+    worst = std::max(worst, RelativeError(estimate.mean, estimate.StandardError(), floor));
+  }
+  return worst;
+}
+
+template <typename Values>
+ProgressiveSampling::ProbeMeans ProgressiveSampling::MeansOverProbes(const Values& values) const {
+  ProbeMeans means(probe_ends_.size() * channels());
+  std::size_t first = 0;
+  for (std::size_t probe = 0; probe < probe_ends_.size(); ++probe) {
+    for (std::size_t point = first; point < probe_ends_[probe]; ++point) {
+      const std::vector<MeanEstimate> estimates = values(point);
+      for (std::size_t c = 0; c < channels(); ++c) means[probe * channels() + c] += estimates[c].mean;
+    }
+    const auto count = static_cast<double>(probe_ends_[probe] - first);
+    for (std::size_t c = 0; c < channels(); ++c) means[probe * channels() + c] /= count;
+    first = probe_ends_[probe];
+  }
+  return means;
+}
+
+ProgressiveSampling::ProbeMeans ProgressiveSampling::CurrentMeans() const {
+  return MeansOverProbes([this](std::size_t point) { return Value(point).estimates; });
+}
+
+ProgressiveSampling::PointValue ProgressiveSampling::Value(std::size_t point) const {
+  PointValue value;
+  value.samples = static_cast<double>(blocks_.blocks(point)) * PointSampler::kBlockSamples;
+  if (value.samples == 0) return value;
+  if (halves_.empty()) {
+    value.estimates = blocks_.Estimates(point);
+    return value;
+  }
+  const auto halves = blocks_.HalfEstimates(point);
+  for (std::size_t c = 0; c < channels(); ++c) value.estimates.push_back(halves_[point].Estimate(halves, c));
+  value.samples = halves_[point].Samples(value.samples);
+  return value;
+}
+
+RenderProgress ProgressiveSampling::Progress() const {
+  RenderProgress progress;
+  progress.rays = rays();
+  progress.relative_error = worst_error_;
+  for (std::size_t point = 0; point < blocks_.points(); ++point) {
+    progress.samples = std::max(progress.samples, static_cast<double>(blocks_.blocks(point)));
+  }
+  progress.samples *= PointSampler::kBlockSamples;
+  if (done()) {
+    progress.fraction = 1;
+    progress.remaining_seconds = 0;
+    return progress;
+  }
+  if (!start_.has_value()) return progress;
+  const double elapsed = Seconds(now_ - *start_).count();
+  if (goal_.samples.has_value()) {
+    progress.fraction =
+        blocks_.total_blocks() / (static_cast<double>(most_blocks_) * static_cast<double>(blocks_.points()));
+  }
+  if (goal_.time_limit.has_value()) progress.fraction = std::max(progress.fraction, elapsed / *goal_.time_limit);
+  if (goal_.target_error.has_value() && worst_error_.has_value() && *worst_error_ > 0) {
+    const double ratio = *goal_.target_error / *worst_error_;
+    progress.fraction = std::max(progress.fraction, std::min(ratio * ratio, 0.99));
+  }
+  progress.fraction = std::min(progress.fraction, 1.0);
+  if (progress.fraction > 0) progress.remaining_seconds = elapsed * (1 - progress.fraction) / progress.fraction;
+  return progress;
+}
+
+}  // namespace flatlight
