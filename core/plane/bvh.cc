@@ -5,8 +5,6 @@
 #include <array>
 #include <numeric>
 
-#include "core/math/tolerances.h"
-
 namespace flatlight {
 namespace {
 
@@ -29,7 +27,7 @@ void Box::Add(const Box& box) {
   high = {std::max(high.x, box.high.x), std::max(high.y, box.high.y)};
 }
 
-Box BoxOf(const Element& element) {
+Box BoxOf(const Element& element, double margin) {
   Box box;
   box.Add(element.a);
   box.Add(element.b);
@@ -45,18 +43,18 @@ Box BoxOf(const Element& element) {
     box.Add(element.a + sagitta);
     box.Add(element.b + sagitta);
   }
-  const Vector2 margin{2 * kTouchDistance, 2 * kTouchDistance};
-  return {box.low - margin, box.high + margin};
+  return {box.low - Vector2{margin, margin}, box.high + Vector2{margin, margin}};
 }
 
-Bvh::Bvh(const std::vector<Element>& elements) {
+Bvh::Bvh(const Scene& scene) {
+  const std::vector<Element>& elements = scene.elements();
   if (elements.empty()) return;
   const std::uint32_t count = static_cast<std::uint32_t>(elements.size());
   std::vector<Box> boxes(count);
-  for (std::uint32_t i = 0; i < count; ++i) boxes[i] = BoxOf(elements[i]);
+  for (std::uint32_t i = 0; i < count; ++i) boxes[i] = BoxOf(elements[i], 2 * scene.touch_distance());
   order_.resize(count);
   std::iota(order_.begin(), order_.end(), 0u);
-  nodes_.reserve(count);
+  nodes_.reserve(2 * elements.size());
   nodes_.push_back({{}, 0, count});
 
   struct Task {

@@ -21,8 +21,8 @@ struct Box {
   double HalfPerimeter() const { return (high.x - low.x) + (high.y - low.y); }
 };
 
-// Encloses the element, with kTouchDistance to spare on all sides.
-Box BoxOf(const Element& element);
+// Encloses the element, with a margin to spare on all sides.
+Box BoxOf(const Element& element, double margin);
 
 class Bvh {
  public:
@@ -34,7 +34,7 @@ class Bvh {
   };
   static constexpr int kMaxDepth = 64;
 
-  explicit Bvh(const std::vector<Element>& elements);
+  explicit Bvh(const Scene& scene);
 
   // Node 0 is the root. Empty if there are no elements.
   const std::vector<Node>& nodes() const { return nodes_; }

@@ -4,36 +4,34 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/math/tolerances.h"
-
 namespace flatlight {
 namespace {
 
 // Whether a point of the circle belongs to the arc. An arc of at most a quarter is the part of its circle between the
 // perpendiculars on its chord's ends and on the chord's outer side.
-bool OnArc(const Element& arc, Vector2 from_a) {
+bool OnArc(const Element& arc, Vector2 from_a, double touch) {
   const Vector2 chord = arc.b - arc.a;
   const double length = Length(chord);
   const double along = Dot(from_a, chord);
-  const double slack = kTouchDistance * length;
+  const double slack = touch * length;
   return along >= -slack && along <= length * length + slack &&
          arc.Orientation() * Cross(chord, from_a) <= slack + 1e-9 * length * arc.length;
 }
 
-void Keep(const Element& arc, Vector2 origin_from_a, Vector2 direction, double t, Crossings& crossings) {
-  if (OnArc(arc, origin_from_a + t * direction)) crossings.t[crossings.count++] = t;
+void Keep(const Element& arc, Vector2 origin_from_a, Vector2 direction, double t, double touch, Crossings& crossings) {
+  if (OnArc(arc, origin_from_a + t * direction, touch)) crossings.t[crossings.count++] = t;
 }
 
 }  // namespace
 
-Crossings CrossSegment(const Element& segment, Point2 origin, Vector2 direction) {
+Crossings CrossSegment(const Element& segment, Point2 origin, Vector2 direction, double touch) {
   const Vector2 a = segment.a - origin;
   const Vector2 b = segment.b - origin;
   // On which side of the line each end lies: the same arithmetic for every element that shares the end.
   const double side_a = Cross(direction, a);
   const double side_b = Cross(direction, b);
   const double length_squared = LengthSquared(direction);
-  const double slack = kTouchDistance * std::sqrt(length_squared);
+  const double slack = touch * std::sqrt(length_squared);
   if ((side_a > slack && side_b > slack) || (side_a < -slack && side_b < -slack)) return {};
   double near = Dot(a, direction) / length_squared;
   double far = Dot(b, direction) / length_squared;
@@ -44,7 +42,7 @@ Crossings CrossSegment(const Element& segment, Point2 origin, Vector2 direction)
   return {1, {std::clamp(t, near, far), 0}};
 }
 
-Crossings CrossArc(const Element& arc, Point2 origin, Vector2 direction) {
+Crossings CrossArc(const Element& arc, Point2 origin, Vector2 direction, double touch) {
   // The circle's equation about the arc's end a, with q = p - a and u the outward normal there:
   // q.u + |q|^2/(2 r) = 0. It loses no digits as r grows; with p on the line it reads A t^2/2 + B t + C = 0.
   const Vector2 q = origin - arc.a;
@@ -57,17 +55,17 @@ Crossings CrossArc(const Element& arc, Point2 origin, Vector2 direction) {
   const double root = -b - std::copysign(std::sqrt(discriminant), b);
   Crossings crossings;
   if (root == 0) {
-    Keep(arc, q, direction, 0, crossings);
+    Keep(arc, q, direction, 0, touch, crossings);
     return crossings;
   }
   const double t0 = root / a;
   const double t1 = 2 * c / root;
-  Keep(arc, q, direction, std::min(t0, t1), crossings);
-  if (t0 != t1) Keep(arc, q, direction, std::max(t0, t1), crossings);
+  Keep(arc, q, direction, std::min(t0, t1), touch, crossings);
+  if (t0 != t1) Keep(arc, q, direction, std::max(t0, t1), touch, crossings);
   return crossings;
 }
 
-ElementCrossings CrossElements(const Element& e, const Element& f) {
+ElementCrossings CrossElements(const Element& e, const Element& f, double touch) {
   ElementCrossings common;
   if (e.kind == Element::Kind::kArc && f.kind == Element::Kind::kArc) {
     const Vector2 between = f.center - e.center;
@@ -79,15 +77,15 @@ ElementCrossings CrossElements(const Element& e, const Element& f) {
     if (half_squared < 0) return {};
     for (const double half : {-std::sqrt(half_squared), std::sqrt(half_squared)}) {
       const Point2 point = e.center + along * between + half * Left(between);
-      if (OnArc(e, point - e.a) && OnArc(f, point - f.a)) common.point[common.count++] = point;
+      if (OnArc(e, point - e.a, touch) && OnArc(f, point - f.a, touch)) common.point[common.count++] = point;
     }
     return common;
   }
   const Element& line = e.kind == Element::Kind::kSegment ? e : f;
   const Element& other = e.kind == Element::Kind::kSegment ? f : e;
   const Vector2 direction = line.b - line.a;
-  const Crossings crossings = other.kind == Element::Kind::kSegment ? CrossSegment(other, line.a, direction)
-                                                                    : CrossArc(other, line.a, direction);
+  const Crossings crossings = other.kind == Element::Kind::kSegment ? CrossSegment(other, line.a, direction, touch)
+                                                                    : CrossArc(other, line.a, direction, touch);
   for (int i = 0; i < crossings.count; ++i) {
     const double t = crossings.t[i];
     if (t >= 0 && t <= 1) common.point[common.count++] = line.a + t * direction;
@@ -95,12 +93,12 @@ ElementCrossings CrossElements(const Element& e, const Element& f) {
   return common;
 }
 
-Crossings CrossOwnCircle(const Element& arc, Point2 on_circle, Vector2 direction) {
+Crossings CrossOwnCircle(const Element& arc, Point2 on_circle, Vector2 direction, double touch) {
   const Vector2 q = on_circle - arc.a;
   const double bend = 1 / arc.radius;
   const Vector2 outward = Normalized(arc.radial_a + bend * q);
   Crossings crossings;
-  Keep(arc, q, direction, -2 * Dot(direction, outward) / (bend * LengthSquared(direction)), crossings);
+  Keep(arc, q, direction, -2 * Dot(direction, outward) / (bend * LengthSquared(direction)), touch, crossings);
   return crossings;
 }
 

@@ -38,12 +38,13 @@ struct Ray {
 };
 
 // What a ray that leaves `from` meets on one element.
-Crossings Cross(const Element& element, const SurfacePoint& from, std::uint32_t carrier, Vector2 direction) {
+Crossings Cross(const Element& element, const SurfacePoint& from, std::uint32_t carrier, Vector2 direction,
+                double touch) {
   if (element.kind == Element::Kind::kSegment) {
-    return element.carrier == carrier ? Crossings{} : CrossSegment(element, from.position, direction);
+    return element.carrier == carrier ? Crossings{} : CrossSegment(element, from.position, direction, touch);
   }
-  return element.carrier == carrier ? CrossOwnCircle(element, from.position, direction)
-                                    : CrossArc(element, from.position, direction);
+  return element.carrier == carrier ? CrossOwnCircle(element, from.position, direction, touch)
+                                    : CrossArc(element, from.position, direction, touch);
 }
 
 // Visits the leaves along the ray, near ones first, until `visit` answers true. `end` may shrink meanwhile.
@@ -76,7 +77,7 @@ void Walk(const Bvh& bvh, const Ray& ray, const double& end, Visit visit) {
 
 }  // namespace
 
-RayCaster::RayCaster(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)), bvh_(scene_->elements()) {}
+RayCaster::RayCaster(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)), bvh_(*scene_) {}
 
 std::optional<Hit> RayCaster::ClosestHit(const SurfacePoint& from, Vector2 direction) const {
   const std::uint32_t carrier = from.element == ElementId::kNone ? kNoCarrier : scene_->element(from.element).carrier;
@@ -84,7 +85,7 @@ std::optional<Hit> RayCaster::ClosestHit(const SurfacePoint& from, Vector2 direc
   double nearest = kInfinity;
   std::uint32_t hit_element = 0;
   Walk(bvh_, ray, nearest, [&](std::uint32_t index) {
-    const Crossings crossings = Cross(scene_->elements()[index], from, carrier, direction);
+    const Crossings crossings = Cross(scene_->elements()[index], from, carrier, direction, scene_->touch_distance());
     for (int i = 0; i < crossings.count; ++i) {
       const double t = crossings.t[i];
       if (t > 0 && (t < nearest || (t == nearest && index < hit_element))) nearest = t, hit_element = index;
@@ -112,10 +113,10 @@ bool RayCaster::Visible(const SurfacePoint& from, const SurfacePoint& to) const 
       // Both ends on one line or circle: nothing of it lies between. Else only its other crossing counts, seen from
       // `to`.
       if (element.kind == Element::Kind::kSegment || to_carrier == from_carrier) return false;
-      crossings = CrossOwnCircle(element, to.position, -direction);
+      crossings = CrossOwnCircle(element, to.position, -direction, scene_->touch_distance());
       if (crossings.count > 0) crossings.t[0] = 1 - crossings.t[0];
     } else {
-      crossings = Cross(element, from, from_carrier, direction);
+      crossings = Cross(element, from, from_carrier, direction, scene_->touch_distance());
     }
     for (int i = 0; i < crossings.count; ++i) blocked |= crossings.t[i] > 0 && crossings.t[i] < 1;
     return blocked;

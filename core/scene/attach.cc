@@ -22,19 +22,17 @@ double DistanceTo(const Element& element, Point2 p) {
   if (t >= 1) return Length(p - element.b);
   const double side = Cross(along, from_a) / Length(along);
   if (element.kind == Element::Kind::kSegment) return std::abs(side);
-  if (side * element.Orientation() > kAttachDistance)
-    return side * element.Orientation();  // On the chord's empty side.
+  if (side * element.Orientation() > 0) return side * element.Orientation();  // On the chord's empty side.
   // The circle's equation about a, q.u + |q|^2/(2 r), is the distance to first order.
   return std::abs(Dot(from_a, element.radial_a) + LengthSquared(from_a) / (2 * element.radius));
 }
 
 }  // namespace
 
-void AttachReceivers(const std::vector<Element>& elements, double coordinate_error, std::vector<Receiver*> receivers) {
+void AttachReceivers(const std::vector<Element>& elements, double near, std::vector<Receiver*> receivers) {
   if (receivers.empty()) return;
   std::sort(receivers.begin(), receivers.end(),
             [](const Receiver* l, const Receiver* r) { return l->position.x < r->position.x; });
-  const double near = kAttachDistance + 2 * coordinate_error;
   std::vector<bool> touched(receivers.size(), false);
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const Element& element = elements[e];

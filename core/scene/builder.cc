@@ -38,8 +38,9 @@ int ArcPieces(double sweep_angle) {
 }
 
 Vector2 Radial(const ArcDescription& arc, double fraction) {
-  const SinCosValue direction = SinCos(arc.start_angle + fraction * arc.sweep_angle);
-  return {direction.cos, direction.sin};
+  // Not of the sum of the angles: it would round as the angles are large.
+  const SinCosValue start = SinCos(arc.start_angle), turn = SinCos(fraction * arc.sweep_angle);
+  return {start.cos * turn.cos - start.sin * turn.sin, start.sin * turn.cos + start.cos * turn.sin};
 }
 
 void AddShape(const CurveDescription& curve, Box& box) {
@@ -77,7 +78,7 @@ std::shared_ptr<const Scene> SceneBuilder::Build() {
   Normalise();
   AddCurves();
   if (!diagnostics_.empty()) return nullptr;
-  scene_->elements_ = RemoveOverlaps(pieces_);
+  scene_->elements_ = RemoveOverlaps(pieces_, kOverlapDistance / kTouchDistance * scene_->touch_distance_);
   std::size_t next = 0;
   for (std::size_t c = 0; c < scene_->curves_.size(); ++c) {
     Curve& curve = scene_->curves_[c];
@@ -102,6 +103,8 @@ void SceneBuilder::Normalise() {
   const double half = std::max({box.high_x - frame.origin.x, frame.origin.x - box.low_x, box.high_y - frame.origin.y,
                                 frame.origin.y - box.low_y});
   frame.scale = half > 0 ? PowerOfTwoAbove(half) : 1;
+  const double farthest = std::max(std::abs(frame.origin.x), std::abs(frame.origin.y));
+  scene_->touch_distance_ = kTouchDistance * (1 + farthest / frame.scale);
   double radiance = 0;
   for (const CurveDescription& curve : description_.curves) {
     if (curve.emission) radiance = std::max(radiance, ToSpectrum(curve.emission->radiance).Max());
@@ -190,7 +193,6 @@ void SceneBuilder::AddArc(std::size_t curve, const ArcDescription& arc) {
   piece.radial_b = first;
   piece.b = on_circle(first);
   for (int i = 0; i < count; ++i) {
-    piece.start_angle = arc.start_angle + i * piece.sweep_angle;
     piece.a = piece.b;
     piece.radial_a = piece.radial_b;
     piece.radial_b = closed && i + 1 == count ? first : Radial(arc, (i + 1.0) / count);
@@ -215,7 +217,7 @@ void SceneBuilder::AddProbes() {
   for (Probe& probe : scene_->probes_)
     for (Receiver& receiver : probe.receivers)
       if (receiver.element == ElementId::kNone) loose.push_back(&receiver);
-  AttachReceivers(scene_->elements_, scene_->coordinate_error_, std::move(loose));
+  AttachReceivers(scene_->elements_, 2 * scene_->touch_distance_, std::move(loose));
 }
 
 ElementId SceneBuilder::ElementAt(const Curve& curve, double arc_length) const {

@@ -15,14 +15,13 @@ ElementFrame FrameAt(const Element& element, double fraction) {
     return frame;
   }
   // By the chord from a, whose length 2 r sin(phi/2) keeps its digits however large the radius is.
-  const double half = 0.5 * fraction * element.sweep_angle;
-  const SinCosValue chord = SinCos(half);
-  const SinCosValue direction = SinCos(element.start_angle + half);
-  const double length = 2 * element.radius * chord.sin;
-  frame.position = element.a + Vector2{-length * direction.sin, length * direction.cos};
-  const SinCosValue radial = SinCos(element.start_angle + 2 * half);
+  const SinCosValue half = SinCos(0.5 * fraction * element.sweep_angle);
+  const auto turn = [&](Vector2 v) { return half.cos * v + half.sin * Left(v); };
+  const Vector2 middle = turn(element.radial_a);
+  const Vector2 radial = turn(middle);
+  frame.position = element.a + 2 * element.radius * half.sin * Left(middle);
   const double orientation = element.Orientation();
-  frame.tangent = orientation * Left({radial.cos, radial.sin});
+  frame.tangent = orientation * Left(radial);
   frame.normal = Left(frame.tangent);
   frame.curvature = orientation / element.radius;
   return frame;

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "core/math/tolerances.h"
 #include "core/scene/element_frame.h"
 
 namespace flatlight {
@@ -69,7 +68,7 @@ void AddEntries(const Element& element, std::uint32_t index, std::vector<Entry>&
 }
 
 // Where `other` covers `element`, if it does.
-bool Covered(const Element& element, const Element& other, Stretch& stretch) {
+bool Covered(const Element& element, const Element& other, double near, Stretch& stretch) {
   if (element.kind != other.kind) return false;
   const Vector2 chord = element.b - element.a;
   const double length = Length(chord);
@@ -80,16 +79,15 @@ bool Covered(const Element& element, const Element& other, Stretch& stretch) {
     double t = Dot(other.b - element.a, chord) / length;
     if (s > t) std::swap(s, t);
     const double from = std::max(s, 0.0), to = std::min(t, length);
-    if (!(to - from > kOverlapDistance)) return false;
+    if (!(to - from > near)) return false;
     // Distance between the lines at both ends of the common stretch.
     const auto side_at = [&](double x) { return side_a + (side_b - side_a) * (x - s) / (t - s); };
-    if (std::abs(side_at(from)) > kOverlapDistance || std::abs(side_at(to)) > kOverlapDistance) return false;
+    if (std::abs(side_at(from)) > near || std::abs(side_at(to)) > near) return false;
     stretch = {from / length, to / length};
     return true;
   }
-  if (std::abs(element.center.x - other.center.x) > kOverlapDistance ||
-      std::abs(element.center.y - other.center.y) > kOverlapDistance ||
-      std::abs(element.radius - other.radius) > kOverlapDistance) {
+  if (std::abs(element.center.x - other.center.x) > near || std::abs(element.center.y - other.center.y) > near ||
+      std::abs(element.radius - other.radius) > near) {
     return false;
   }
   // Angles of the other's ends from element.a, in the sense of the element; both turn by at most a quarter.
@@ -102,7 +100,7 @@ bool Covered(const Element& element, const Element& other, Stretch& stretch) {
   if (t - s > 2) return false;  // It lies around the opposite point.
   const double sweep = std::abs(element.sweep_angle);
   const double from = std::max(s, 0.0), to = std::min(t, sweep);
-  if (!((to - from) * element.radius > kOverlapDistance)) return false;
+  if (!((to - from) * element.radius > near)) return false;
   stretch = {from / sweep, to / sweep};
   return true;
 }
@@ -112,7 +110,6 @@ Element Cut(const Element& element, Stretch stretch) {
   if (stretch.from > 0) {
     cut.a = FrameAt(element, stretch.from).position;
     cut.arc_begin = element.arc_begin + stretch.from * element.length;
-    cut.start_angle = element.start_angle + stretch.from * element.sweep_angle;
   }
   if (stretch.to < 1) cut.b = FrameAt(element, stretch.to).position;
   cut.sweep_angle = (stretch.to - stretch.from) * element.sweep_angle;
@@ -125,7 +122,7 @@ Element Cut(const Element& element, Stretch stretch) {
 }
 
 // What the pieces listed before it cover of each piece.
-std::unordered_map<std::uint32_t, std::vector<Stretch>> FindOverlaps(const std::vector<Element>& pieces) {
+std::unordered_map<std::uint32_t, std::vector<Stretch>> FindOverlaps(const std::vector<Element>& pieces, double near) {
   std::vector<Entry> entries;
   entries.reserve(pieces.size() + pieces.size() / 4);
   for (std::uint32_t i = 0; i < pieces.size(); ++i) AddEntries(pieces[i], i, entries);
@@ -137,7 +134,7 @@ std::unordered_map<std::uint32_t, std::vector<Stretch>> FindOverlaps(const std::
     for (std::size_t j = i + 1; j < entries.size(); ++j) {
       if (entries[j].cell != entries[i].cell || entries[j].low > entries[i].high) break;
       const auto [first, second] = std::minmax(entries[i].piece, entries[j].piece);
-      if (Stretch stretch; Covered(pieces[second], pieces[first], stretch)) covered[second].push_back(stretch);
+      if (Stretch stretch; Covered(pieces[second], pieces[first], near, stretch)) covered[second].push_back(stretch);
     }
   }
   return covered;
@@ -145,8 +142,8 @@ std::unordered_map<std::uint32_t, std::vector<Stretch>> FindOverlaps(const std::
 
 }  // namespace
 
-std::vector<Element> RemoveOverlaps(const std::vector<Element>& pieces) {
-  auto covered = FindOverlaps(pieces);
+std::vector<Element> RemoveOverlaps(const std::vector<Element>& pieces, double near) {
+  auto covered = FindOverlaps(pieces, near);
   if (covered.empty()) return pieces;
   std::vector<Element> kept;
   kept.reserve(pieces.size());
@@ -160,7 +157,7 @@ std::vector<Element> RemoveOverlaps(const std::vector<Element>& pieces) {
     std::vector<Stretch>& stretches = found->second;
     std::sort(stretches.begin(), stretches.end(), [](Stretch l, Stretch r) { return l.from < r.from; });
     stretches.push_back({1, 1});
-    const double least = kOverlapDistance / piece.length;
+    const double least = near / piece.length;
     double at = 0;
     for (const Stretch& stretch : stretches) {
       if (stretch.from - at > least) kept.push_back(Cut(piece, {at, stretch.from}));

@@ -8,10 +8,10 @@
 
 namespace flatlight {
 
-// Where pieces lie on one another (on one line or circle, to kOverlapDistance), the first one stays and the others are
-// cut away there, so that a ray never meets two at once. This is the rule "ties break by order" made once instead of at
-// every ray. The order of what stays is kept.
-std::vector<Element> RemoveOverlaps(const std::vector<Element>& pieces);
+// Where pieces lie on one another (on one line or circle, to the distance `near`), the first one stays and the others
+// are cut away there, so that a ray never meets two at once. This is the rule "ties break by order" made once instead
+// of at every ray. The order of what stays is kept.
+std::vector<Element> RemoveOverlaps(const std::vector<Element>& pieces, double near);
 
 }  // namespace flatlight
 

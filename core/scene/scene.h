@@ -35,10 +35,9 @@ struct Element {
   double arc_begin = 0;  // Arc length from the curve's first point to a.
   // Arcs of one circle share a carrier: a ray that leaves one of them meets the circle again at one known place only.
   std::uint32_t carrier = 0;
-  // Arcs only. The arc turns about center by sweep_angle (positive: counter-clockwise) from start_angle.
+  // Arcs only. The arc turns about center by sweep_angle (positive: counter-clockwise).
   Point2 center;
   double radius = 0;
-  double start_angle = 0;
   double sweep_angle = 0;
   Vector2 radial_a;  // Unit, from the centre to a. Neighbouring arcs of a circle share the bits at their common end.
   Vector2 radial_b;
@@ -101,6 +100,8 @@ class Scene {
   const Frame& frame() const { return frame_; }
   // Normalised coordinates are known to this distance: rounding of the input and of the shift.
   double coordinate_error() const { return coordinate_error_; }
+  // Curves this close touch: rays find no gap between them, a free point this close to a curve lies on it.
+  double touch_distance() const { return touch_distance_; }
   const std::vector<Element>& elements() const { return elements_; }
   const std::vector<Curve>& curves() const { return curves_; }
   const std::vector<Probe>& probes() const { return probes_; }
@@ -122,6 +123,7 @@ class Scene {
   int channels_ = 1;
   Frame frame_;
   double coordinate_error_ = 0;
+  double touch_distance_ = 0;
   std::vector<Element> elements_;
   std::vector<Curve> curves_;
   std::vector<Probe> probes_;

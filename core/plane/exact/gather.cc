@@ -89,7 +89,7 @@ void Gatherer::Push(std::uint32_t node, const Receiver& receiver) {
 
 void Gatherer::AddElement(std::uint32_t element, const Receiver& receiver) {
   ++tests_;
-  const BoxView view(BoxOf(scene_.elements()[element]), receiver);
+  const BoxView view(BoxOf(scene_.elements()[element], 0), receiver);
   if (view.Empty() || Hidden(view.low, view.high, view.distance)) return;
   const Parts parts = PartsOf(scene_, static_cast<ElementId>(element), receiver);
   for (int i = 0; i < parts.count; ++i) {

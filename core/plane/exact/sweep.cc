@@ -194,7 +194,7 @@ void Sweep::AddCrossings(std::uint32_t first, std::uint32_t second, double low, 
   const Element& e = scene_.element((*parts_)[first].element);
   const Element& f = scene_.element((*parts_)[second].element);
   if (e.carrier == f.carrier) return;
-  const ElementCrossings points = CrossElements(e, f);
+  const ElementCrossings points = CrossElements(e, f, scene_.touch_distance());
   for (int i = 0; i < points.count; ++i) {
     const Edge edge = VertexEdge(*receiver_, points.point[i]);
     const double uncertain = Uncertainty(edge);

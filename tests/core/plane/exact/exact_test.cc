@@ -53,7 +53,7 @@ struct WorldValue {
 };
 
 std::vector<WorldValue> Solve(const Scene& scene, std::size_t probe) {
-  const Bvh bvh(scene.elements());
+  const Bvh bvh(scene);
   ExactSolver solver(scene, bvh, {});
   std::vector<WorldValue> values;
   const double l = scene.frame().radiance_scale, k = scene.frame().scale;

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/scene/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/scene/element_frame.h"
+
+namespace flatlight {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr double kPi = 3.14159265358979323846;
+
+// A floor, a lamp above it and a round post; a probe on the floor.
+SceneDescription GoodScene() {
+  SceneDescription scene;
+  scene.name = "good";
+  scene.materials.push_back({"white", LambertianDescription{{0.8}}});
+  scene.curves.push_back({"floor", SegmentDescription{{-2, 0}, {2, 0}}, "white", std::nullopt});
+  scene.curves.push_back({"lamp", SegmentDescription{{0.5, 2}, {-0.5, 2}}, "white", EmissionDescription{{5}, false}});
+  scene.curves.push_back({"post", ArcDescription{{0.6, 0.7}, 0.2, 0, -2 * kPi}, "white", std::nullopt});
+  ProbeDescription probe;
+  probe.name = "floor";
+  probe.curve = "floor";
+  probe.count = 4;
+  scene.probes.push_back(probe);
+  return scene;
+}
+
+std::vector<std::string> Mistakes(const SceneDescription& description) {
+  Diagnostics diagnostics;
+  const auto scene = BuildScene(description, diagnostics);
+  EXPECT_EQ(scene == nullptr, !diagnostics.empty());
+  std::vector<std::string> texts;
+  for (const Diagnostic& d : diagnostics.kept()) texts.push_back(d.path + " " + d.message);
+  return texts;
+}
+
+std::shared_ptr<const Scene> Build(const SceneDescription& description) {
+  EXPECT_THAT(Mistakes(description), IsEmpty());
+  Diagnostics diagnostics;
+  return BuildScene(description, diagnostics);
+}
+
+// Every mistake that a description can have, one by one.
+TEST(SceneTest, EachMistakeNamesPlaceValueAndWhatIsAllowed) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  struct Case {
+    std::function<void(SceneDescription&)> spoil;
+    std::string path;
+    std::string message;
+  };
+  const auto segment = [](SceneDescription& s) -> SegmentDescription& {
+    return std::get<SegmentDescription>(s.curves[0].shape);
+  };
+  const auto arc = [](SceneDescription& s) -> ArcDescription& { return std::get<ArcDescription>(s.curves[2].shape); };
+  const std::vector<Case> cases = {
+      {[&](auto& s) { segment(s).a.x = nan; }, "plane.curves[0].segment.a.x ", "is nan"},
+      {[&](auto& s) { segment(s).b.y = infinity; }, "plane.curves[0].segment.b.y ", "is inf"},
+      {[&](auto& s) { segment(s).b = segment(s).a; }, "plane.curves[0].segment ", "zero length"},
+      {[&](auto& s) {
+         s.curves[0].shape = PolylineDescription{{{0, 0}}, false};
+       },
+       "plane.curves[0].polyline.points ", "at least 2"},
+      {[&](auto& s) {
+         s.curves[0].shape = PolylineDescription{{{0, 0}, {1, 1}, {1, 1}}, false};
+       },
+       "plane.curves[0].polyline.points[2] ", "neighbours must differ"},
+      {[&](auto& s) {
+         s.curves[0].shape = PolylineDescription{{{0, 0}, {1, 1}, {0, 0}}, true};
+       },
+       "plane.curves[0].polyline.points[2] ", "equals the first point"},
+      {[&](auto& s) { s.curves[0].shape = std::monostate{}; }, "plane.curves[0] ", "no shape"},
+      {[&](auto& s) { arc(s).radius = 0; }, "plane.curves[2].arc.radius ", "is 0; allowed: above 0"},
+      {[&](auto& s) { arc(s).radius = -1; }, "plane.curves[2].arc.radius ", "is -1"},
+      {[&](auto& s) { arc(s).sweep_angle = 7; }, "plane.curves[2].arc.sweepAngle ", "is 7; allowed: -6.283"},
+      {[&](auto& s) { arc(s).sweep_angle = 0; }, "plane.curves[2].arc.sweepAngle ", "is 0"},
+      {[&](auto& s) { arc(s).start_angle = 1e7; }, "plane.curves[2].arc.startAngle ",
+       "is 1e+07; allowed: -1e+06 to 1e+06"},
+      {[&](auto& s) { s.curves[1].material = "glass"; }, "plane.curves[1].material ",
+       "\"glass\" is not a material; known: \"white\""},
+      {[&](auto& s) { s.curves[1].name = "floor"; }, "plane.curves[1].name ", "plane.curves[0]"},
+      {[&](auto& s) { s.curves[1].name = ""; }, "plane.curves[1].name ", "missing or empty"},
+      {[&](auto& s) { s.curves[1].emission->radiance = {-1}; }, "plane.curves[1].emission.radiance[0] ",
+       "is -1; allowed: 0 to"},
+      {[&](auto& s) {
+         s.curves[1].emission->radiance = {1, 2};
+       },
+       "plane.curves[1].emission.radiance ", "has 2 values"},
+      {[&](auto& s) {
+         s.materials[0].kind = LambertianDescription{{0.2, 1.5, 0}};
+       },
+       "plane.materials[0].lambertian.reflectance[1] ", "is 1.5; allowed: 0 to 1"},
+      {[&](auto& s) { s.materials[0].kind = std::monostate{}; }, "plane.materials[0] ", "no kind"},
+      {[&](auto& s) { s.probes.clear(); }, "probes ", "at least one"},
+      {[&](auto& s) { s.probes[0].curve = "roof"; }, "probes[0].curve ", "\"roof\" is not a curve"},
+      {[&](auto& s) { s.probes[0].count.reset(); }, "probes[0].count ", "missing"},
+      {[&](auto& s) { s.probes[0].count = 0; }, "probes[0].count ", "is 0; allowed: 1 to"},
+      {[&](auto& s) { s.probes[0].count = 4000000000; }, "probes[0].count ", "is 4000000000"},
+      {[&](auto& s) { s.probes[0].from = 1.5; }, "probes[0].from ", "is 1.5; allowed: 0 to 1"},
+      {[&](auto& s) { s.probes[0].to = 0; }, "probes[0].to ", "equals from"},
+      {[&](auto& s) {
+         s.probes[0].points.push_back({{0, 1}, {0, 1}});
+       },
+       "probes[0] ", "both a curve and points"},
+      {[&](auto& s) { s.probes[0].curve.reset(); }, "probes[0] ", "neither a curve nor points"},
+  };
+  for (const Case& c : cases) {
+    SceneDescription scene = GoodScene();
+    c.spoil(scene);
+    EXPECT_THAT(Mistakes(scene), testing::Contains(testing::AllOf(testing::StartsWith(c.path), HasSubstr(c.message))))
+        << c.path << c.message;
+  }
+}
+
+TEST(SceneTest, AllMistakesAreReported) {
+  SceneDescription scene = GoodScene();
+  scene.curves[0].material = "x";
+  scene.curves[1].emission->radiance = {-1, 0, -2};
+  std::get<ArcDescription>(scene.curves[2].shape).radius = -3;
+  scene.probes[0].count = 0;
+  EXPECT_THAT(Mistakes(scene), SizeIs(5));
+}
+
+TEST(SceneTest, GeometryIsNormalisedWithoutRounding) {
+  for (const double scale : {1e-9, 1.0, 1e9}) {
+    for (const double shift : {0.0, 1e6}) {
+      SceneDescription scene = GoodScene();
+      for (CurveDescription& curve : scene.curves) {
+        if (auto* s = std::get_if<SegmentDescription>(&curve.shape)) {
+          for (Point2* p : {&s->a, &s->b}) *p = {p->x * scale + shift * scale, p->y * scale};
+        } else {
+          auto& arc = std::get<ArcDescription>(curve.shape);
+          arc.center = {arc.center.x * scale + shift * scale, arc.center.y * scale}, arc.radius *= scale;
+        }
+      }
+      const auto built = Build(scene);
+      for (const Element& element : built->elements()) {
+        EXPECT_LE(std::abs(element.a.x), 1);
+        EXPECT_LE(std::abs(element.a.y), 1);
+      }
+      EXPECT_NEAR(built->curves()[0].length * built->frame().scale, 4 * scale, 1e-9 * scale);
+      EXPECT_EQ(std::log2(built->frame().scale), std::floor(std::log2(built->frame().scale)));
+    }
+  }
+}
+
+TEST(SceneTest, ProbePointsFollowTheConventions) {
+  SceneDescription description = GoodScene();
+  description.probes[0].from = 0.25;
+  description.probes[0].side = Side::kBack;
+  ProbeDescription round;
+  round.name = "post";
+  round.curve = "post";
+  round.count = 8;
+  description.probes.push_back(round);
+  const auto scene = Build(description);
+  const Receiver& first = scene->probes()[0].receivers[0];
+  EXPECT_NEAR(scene->ToWorld(first.position).x, -2 + 4 * (0.25 + 0.75 * 0.125), 1e-15);
+  EXPECT_EQ(first.normal, (Vector2{0, -1}));
+  EXPECT_EQ(first.tangent, (Vector2{1, 0}));
+  EXPECT_NEAR(first.arc_length * scene->frame().scale, 4 * (0.25 + 0.75 * 0.125), 1e-15);
+  // The clockwise post faces away from its centre and its tangent turns away from its normal.
+  const Receiver& post = scene->probes()[1].receivers[0];
+  const double angle = -2 * kPi / 16;
+  EXPECT_NEAR(post.normal.x, std::cos(angle), 1e-15);
+  EXPECT_NEAR(post.normal.y, std::sin(angle), 1e-15);
+  EXPECT_NEAR(post.tangent.x, std::sin(angle), 1e-15);
+  EXPECT_NEAR(post.curvature / scene->frame().scale, -5, 1e-14);
+  EXPECT_NEAR(scene->ToWorld(post.position).x, 0.6 + 0.2 * std::cos(angle), 1e-15);
+}
+
+TEST(SceneTest, APointOnAVertexBelongsToThePieceThatStartsThere) {
+  SceneDescription description = GoodScene();
+  description.curves[0].shape = PolylineDescription{{{0, 0}, {1, 0}, {1, 1}}, false};
+  description.probes[0].count = 1;  // At half the length: the corner.
+  const auto scene = Build(description);
+  const Receiver& corner = scene->probes()[0].receivers[0];
+  EXPECT_NEAR(corner.tangent.y, 1, 1e-15);
+  EXPECT_EQ(corner.element, static_cast<ElementId>(1));
+}
+
+TEST(SceneTest, WhereCurvesOverlapTheFirstOneIsThere) {
+  SceneDescription description = GoodScene();
+  description.curves[0].shape = SegmentDescription{{-1, 2}, {0.25, 2}};  // Covers part of the lamp, which comes second.
+  description.curves.push_back({"inner", ArcDescription{{0.6, 0.7}, 0.2, 1, 1}, "white", std::nullopt});
+  const auto scene = Build(description);
+  const Curve& lamp = scene->curves()[1];
+  ASSERT_EQ(lamp.element_count, 1u);
+  const Element& rest = scene->elements()[lamp.first_element];
+  EXPECT_NEAR(rest.length * scene->frame().scale, 0.25, 1e-15);
+  EXPECT_NEAR(scene->ToWorld(rest.b).x, 0.25, 1e-15);
+  EXPECT_EQ(scene->curves()[3].element_count, 0u);
+}
+
+TEST(SceneTest, FreePointsOnACurveKnowIt) {
+  SceneDescription description = GoodScene();
+  ProbeDescription free;
+  free.name = "free";
+  free.points = {
+      {{0.5, 0}, {0, 3}}, {{0.5, 0}, {0, -1}}, {{0.5, 0.1}, {0, 1}}, {{0.5, 0}, {1, 1}}, {{0.8, 0.7}, {1, 0}}};
+  description.probes.push_back(free);
+  const auto scene = Build(description);
+  const auto& r = scene->probes()[1].receivers;
+  EXPECT_EQ(r[0].element, static_cast<ElementId>(0));
+  EXPECT_EQ(r[0].normal, (Vector2{0, 1}));
+  EXPECT_EQ(r[1].element, static_cast<ElementId>(0));
+  EXPECT_EQ(r[1].tangent, (Vector2{-1, 0}));
+  EXPECT_EQ(r[2].element, ElementId::kNone);
+  EXPECT_EQ(r[3].element, ElementId::kNone);  // Its normal is not the floor's: lifted off the floor.
+  EXPECT_GT(scene->ToWorld(r[3].position).y, 0);
+  EXPECT_NE(r[4].element, ElementId::kNone);
+}
+
+TEST(SceneTest, HashesTellWorldsApartAndIgnoreNames) {
+  const SceneDescription one = GoodScene();
+  SceneDescription renamed = GoodScene();
+  renamed.name = "other";
+  renamed.materials[0].name = renamed.curves[0].material = renamed.curves[1].material = renamed.curves[2].material =
+      "snow";
+  renamed.curves[0].name = "ground";
+  renamed.probes[0].curve = "ground";
+  const auto a = Build(one), b = Build(renamed);
+  EXPECT_THAT(a->world_hash(), SizeIs(64));
+  EXPECT_EQ(a->world_hash(), b->world_hash());
+  EXPECT_EQ(a->probe_hash(), b->probe_hash());
+  SceneDescription brighter = GoodScene();
+  brighter.curves[1].emission->radiance = {5.000000000000001};
+  EXPECT_NE(Build(brighter)->world_hash(), a->world_hash());
+  EXPECT_EQ(Build(brighter)->probe_hash(), a->probe_hash());
+  SceneDescription denser = GoodScene();
+  denser.probes[0].count = 5;
+  EXPECT_EQ(Build(denser)->world_hash(), a->world_hash());
+  EXPECT_NE(Build(denser)->probe_hash(), a->probe_hash());
+}
+
+TEST(SceneTest, TraitsTellWhatThePlannerAsks) {
+  SceneDescription description = GoodScene();
+  const auto grey = Build(description);
+  EXPECT_EQ(grey->channels(), 1);
+  EXPECT_TRUE(grey->traits().grey);
+  EXPECT_EQ(grey->traits().emitting_curves, 1u);
+  EXPECT_EQ(grey->traits().max_reflectance, 0.8);
+  EXPECT_EQ(grey->traits().probe_points, 4u);
+  description.materials[0].kind = LambertianDescription{{0.5, 0.5, 0.5}};
+  const auto equal = Build(description);
+  EXPECT_EQ(equal->channels(), 3);
+  EXPECT_TRUE(equal->traits().grey);
+  description.materials[0].kind = LambertianDescription{{0.5, 0.25, 0.5}};
+  EXPECT_FALSE(Build(description)->traits().grey);
+}
+
+TEST(SceneTest, PiecesLostBesideTheWholeSceneAreRefused) {
+  SceneDescription description = GoodScene();
+  description.curves[0].shape = SegmentDescription{{1e-200, 0}, {2e-200, 0}};
+  EXPECT_THAT(Mistakes(description), ElementsAre(testing::AllOf(HasSubstr("plane.curves[0]"), HasSubstr("too short"))));
+}
+
+}  // namespace
+}  // namespace flatlight
