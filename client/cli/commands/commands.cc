@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/commands/commands.h"
+
+#include <map>
+#include <string>
+
+namespace flatlight {
+
+CommandResult RunCommand(const CommandLine& line, Interruption& interruption) {
+  static const std::map<std::string, CommandResult (*)(const CommandLine&, Interruption&)> commands = {
+      {"render", Render},   {"submit", Submit},     {"watch", Watch},           {"jobs", Jobs},
+      {"show", Show},       {"fetch", Fetch},       {"cancel", Cancel},         {"scenes", Scenes},
+      {"explain", Explain}, {"validate", Validate}, {"compare", CompareResults}};
+  return commands.at(line.command)(line, interruption);
+}
+
+}  // namespace flatlight

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands. Each prints its answer and returns how it ended; an error is for the caller to print.
+#ifndef FLATLIGHT_CLIENT_CLI_COMMANDS_COMMANDS_H_
+#define FLATLIGHT_CLIENT_CLI_COMMANDS_COMMANDS_H_
+
+#include "absl/status/statusor.h"
+#include "client/cli/connection/interruption.h"
+#include "client/cli/options/command_line.h"
+#include "client/cli/status/exit_code.h"
+
+namespace flatlight {
+
+using CommandResult = absl::StatusOr<ExitCode>;
+
+CommandResult RunCommand(const CommandLine& line, Interruption& interruption);
+
+// render_command.cc
+CommandResult Render(const CommandLine& line, Interruption& interruption);
+
+// job_commands.cc
+CommandResult Submit(const CommandLine& line, Interruption& interruption);
+CommandResult Watch(const CommandLine& line, Interruption& interruption);
+CommandResult Jobs(const CommandLine& line, Interruption& interruption);
+CommandResult Show(const CommandLine& line, Interruption& interruption);
+CommandResult Fetch(const CommandLine& line, Interruption& interruption);
+CommandResult Cancel(const CommandLine& line, Interruption& interruption);
+
+// scene_commands.cc
+CommandResult Scenes(const CommandLine& line, Interruption& interruption);
+CommandResult Explain(const CommandLine& line, Interruption& interruption);
+CommandResult Validate(const CommandLine& line, Interruption& interruption);
+
+// compare_command.cc
+CommandResult CompareResults(const CommandLine& line, Interruption& interruption);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CLIENT_CLI_COMMANDS_COMMANDS_H_

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <string>
+
+#include "client/cli/commands/commands.h"
+#include "client/cli/commands/console.h"
+#include "client/cli/commands/job_text.h"
+#include "client/cli/commands/plan_text.h"
+#include "client/cli/commands/result_outputs.h"
+#include "client/cli/commands/session.h"
+#include "client/cli/formats/enum_names.h"
+#include "client/cli/formats/json_text.h"
+#include "client/cli/jobs/job_calls.h"
+#include "client/cli/jobs/job_name.h"
+#include "client/cli/jobs/watch.h"
+#include "client/cli/outputs/outputs.h"
+#include "client/cli/scenes/scene_upload.h"
+#include "client/cli/text/text_table.h"
+
+namespace flatlight {
+namespace {
+
+absl::StatusOr<std::unique_ptr<Session>> OpenServer(const CommandLine& line, Interruption& interruption) {
+  return Session::Open(line, Session::WithoutServer::kRefuse, interruption);
+}
+
+// Prints the answer, and ends with kDone.
+CommandResult Answer(const std::string& text) {
+  if (const absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+CommandResult Submit(const CommandLine& line, Interruption& interruption) {
+  const auto scene = ParseSceneArgument(line.scene);
+  if (!scene.ok()) return scene.status();
+  if (const absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
+  const auto session = OpenServer(line, interruption);
+  if (!session.ok()) return session.status();
+  Connection& connection = (*session)->connection();
+  const auto source = ProvideScene(connection, *scene);
+  if (!source.ok()) return source.status();
+  const auto job = CreateJob(connection, *source, line.settings);
+  if (!job.ok()) return ExplainSceneError(connection, *scene, *source, job.status());
+  Console console(Console::Answer::kMachine, line.quiet);
+  console.Say("scene     " + Printable(job->scene()) + " (" + scene->label + ")\n" + ShortPlanText(job->plan()));
+  return Answer(line.json ? ToJson(*job) : job->name() + '\n');
+}
+
+CommandResult Watch(const CommandLine& line, Interruption& interruption) {
+  const auto session = OpenServer(line, interruption);
+  if (!session.ok()) return session.status();
+  Connection& connection = (*session)->connection();
+  const auto name = ResolveJobName(connection, line.job);
+  if (!name.ok()) return name.status();
+  Console console(line.json ? Console::Answer::kMachine : Console::Answer::kText, line.quiet);
+  WatchOptions options;
+  options.max_rate = console.Rate();
+  options.on_update = [&console](const v1::Job& job) { console.Show(job); };
+  const auto job = WatchJob(connection, *name, options);
+  console.EndProgress();
+  if (!job.ok() && interruption.Requested())
+    return InterruptedError("stopped watching; the job goes on (flatlight cancel " + *name + " stops it)");
+  if (!job.ok()) return job.status();
+  if (line.json)
+    if (const absl::Status printed = PrintBytes(ToJson(*job)); !printed.ok()) return printed;
+  if (const absl::Status success = CheckSuccess(*job); !success.ok()) return success;
+  const std::string reason = job->end_reason() == 0 ? "" : " (" + OptionName(job->end_reason()) + ")";
+  console.Say(job->name() + " " + OptionName(job->state()) + reason + '\n');
+  return ExitCode::kDone;
+}
+
+CommandResult Jobs(const CommandLine& line, Interruption& interruption) {
+  const auto session = OpenServer(line, interruption);
+  if (!session.ok()) return session.status();
+  const auto jobs = ListJobs((*session)->connection());
+  if (!jobs.ok()) return jobs.status();
+  if (line.json) {
+    v1::ListJobsResponse all;
+    all.mutable_jobs()->Add(jobs->begin(), jobs->end());
+    return Answer(ToJson(all));
+  }
+  const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+  return Answer(JobListText(*jobs, now.count()));
+}
+
+CommandResult Show(const CommandLine& line, Interruption& interruption) {
+  const auto session = OpenServer(line, interruption);
+  if (!session.ok()) return session.status();
+  const auto name = ResolveJobName((*session)->connection(), line.job);
+  if (!name.ok()) return name.status();
+  const auto job = GetJob((*session)->connection(), *name);
+  if (!job.ok()) return job.status();
+  return Answer(line.json ? ToJson(*job) : JobText(*job));
+}
+
+CommandResult Fetch(const CommandLine& line, Interruption& interruption) {
+  const auto outputs = OutputsOf(line.outputs, line.json);
+  if (!outputs.ok()) return outputs.status();
+  const auto session = OpenServer(line, interruption);
+  if (!session.ok()) return session.status();
+  const auto name = ResolveJobName((*session)->connection(), line.job);
+  if (!name.ok()) return name.status();
+  const auto result = FetchResult((*session)->connection(), *name);
+  if (!result.ok()) return result.status();
+  Console console = ConsoleFor(*outputs, line.quiet);
+  if (const absl::Status delivered = DeliverResult(*result, *outputs, console); !delivered.ok()) return delivered;
+  return ExitCode::kDone;
+}
+
+CommandResult Cancel(const CommandLine& line, Interruption& interruption) {
+  const auto session = OpenServer(line, interruption);
+  if (!session.ok()) return session.status();
+  const auto name = ResolveJobName((*session)->connection(), line.job);
+  if (!name.ok()) return name.status();
+  const auto job = CancelJob((*session)->connection(), *name);
+  if (!job.ok()) return job.status();
+  if (line.json) return Answer(ToJson(*job));
+  return line.quiet ? ExitCode::kDone : Answer(job->name() + " " + OptionName(job->state()) + '\n');
+}
+
+}  // namespace flatlight

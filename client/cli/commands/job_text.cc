@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/commands/job_text.h"
+
+#include <algorithm>
+
+#include "client/cli/commands/plan_text.h"
+#include "client/cli/formats/enum_names.h"
+#include "client/cli/progress/progress_line.h"
+#include "client/cli/text/numbers.h"
+#include "client/cli/text/text_table.h"
+#include "google/protobuf/util/time_util.h"
+
+namespace flatlight {
+namespace {
+
+using google::protobuf::Timestamp;
+using google::protobuf::util::TimeUtil;
+
+double Seconds(const Timestamp& time) { return static_cast<double>(time.seconds()) + 1e-9 * time.nanos(); }
+
+std::string Uuid(const v1::Job& job) { return job.name().substr(job.name().find('/') + 1); }
+
+}  // namespace
+
+std::string JobListText(const std::vector<v1::Job>& jobs, double now) {
+  if (jobs.empty()) return "no jobs\n";
+  std::vector<std::vector<std::string>> rows = {{"JOB", "STATE", "DONE", "METHOD", "AGE", "SCENE"}};
+  for (const v1::Job& job : jobs)
+    rows.push_back({Uuid(job), OptionName(job.state()),
+                    std::to_string(static_cast<int>(100 * job.progress().fraction())) + " %",
+                    OptionName(job.plan().settings().method()),
+                    FormatSeconds(std::max(0.0, now - Seconds(job.create_time()))), Printable(job.scene())});
+  return FormatTable(rows);
+}
+
+std::string JobText(const v1::Job& job) {
+  std::vector<std::vector<std::string>> rows = {{"job", job.name()}, {"scene", Printable(job.scene())}};
+  const std::string end = job.end_reason() == 0 ? "" : ", " + OptionName(job.end_reason());
+  rows.push_back({"state", OptionName(job.state()) + end});
+  if (job.has_error()) rows.push_back({"error", Printable(job.error().message())});
+  rows.push_back({"progress", ProgressLine(job, 0)});
+  if (job.progress().samples() > 0)
+    rows.push_back({"samples", FormatExactly(job.progress().samples()) + " paths a point"});
+  if (job.progress().rays() > 0) rows.push_back({"rays", FormatCount(job.progress().rays())});
+  rows.push_back({"time", FormatSeconds(job.progress().elapsed_seconds())});
+  rows.push_back({"created", TimeUtil::ToString(job.create_time())});
+  if (job.has_start_time()) rows.push_back({"started", TimeUtil::ToString(job.start_time())});
+  if (job.has_end_time()) rows.push_back({"ended", TimeUtil::ToString(job.end_time())});
+  return FormatTable(rows) + '\n' + PlanText(job.plan());
+}
+
+}  // namespace flatlight

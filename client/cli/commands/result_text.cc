@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/commands/result_text.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "client/cli/text/numbers.h"
+#include "client/cli/text/text_table.h"
+
+namespace flatlight {
+namespace {
+
+constexpr double kDark = 0.01;
+
+std::string RangeText(const v1::ProbeResult& probe) {
+  if (probe.irradiance().empty()) return "no points";
+  const auto [low, high] = std::minmax_element(probe.irradiance().begin(), probe.irradiance().end());
+  return FormatValue(*low) + (*low == *high ? "" : " to " + FormatValue(*high)) + " W/m";
+}
+
+std::string ErrorText(const v1::RenderResult& result, const v1::ProbeResult& probe) {
+  if (const auto error = LargestRelativeError(probe)) return "largest relative standard error " + FormatPercent(*error);
+  if (result.statistics().has_error_bound())
+    return "error at most " + FormatValue(result.statistics().error_bound(), 2) + " W/m";
+  return "";
+}
+
+std::string EndText(v1::EndReason reason) {
+  switch (reason) {
+    case v1::CONVERGED:
+      return "finished";
+    case v1::SAMPLES_DONE:
+      return "all samples done";
+    case v1::TARGET_REACHED:
+      return "target error reached";
+    case v1::TIME_LIMIT:
+      return "time limit reached";
+    default:
+      return "ended before its time";
+  }
+}
+
+}  // namespace
+
+std::optional<double> LargestRelativeError(const v1::ProbeResult& probe) {
+  if (probe.standard_error().empty()) return std::nullopt;
+  const int channels = static_cast<int>(probe.channels());
+  std::vector<double> mean(probe.channels());
+  for (int i = 0; i < probe.irradiance_size(); ++i)
+    mean[static_cast<std::size_t>(i % channels)] += probe.irradiance(i) / probe.count();
+  double largest = 0;
+  for (int i = 0; i < probe.standard_error_size(); ++i) {
+    const double scale = std::max(probe.irradiance(i), kDark * mean[static_cast<std::size_t>(i % channels)]);
+    if (probe.standard_error(i) > 0) largest = std::max(largest, probe.standard_error(i) / scale);
+  }
+  return largest;
+}
+
+std::string ResultText(const v1::RenderResult& result) {
+  std::vector<std::vector<std::string>> rows;
+  for (const v1::ProbeResult& probe : result.probes())
+    rows.push_back({Printable(probe.name()), "irradiance " + RangeText(probe), ErrorText(result, probe)});
+  const v1::Statistics& statistics = result.statistics();
+  std::string text = FormatTable(rows);
+  text += EndText(result.end_reason()) + " in " + FormatSeconds(statistics.wall_seconds());
+  if (statistics.has_cpu_seconds()) text += " (" + FormatSeconds(statistics.cpu_seconds()) + " of processor time)";
+  if (statistics.rays() > 0) text += ", " + FormatCount(statistics.rays()) + " rays";
+  return text + '\n';
+}
+
+}  // namespace flatlight

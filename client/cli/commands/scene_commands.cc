@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "client/cli/commands/commands.h"
+#include "client/cli/commands/plan_text.h"
+#include "client/cli/commands/session.h"
+#include "client/cli/formats/json_text.h"
+#include "client/cli/outputs/outputs.h"
+#include "client/cli/scenes/scene_upload.h"
+#include "client/cli/text/numbers.h"
+#include "client/cli/text/text_table.h"
+
+namespace flatlight {
+namespace {
+
+CommandResult Answer(const std::string& text) {
+  if (const absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
+  return ExitCode::kDone;
+}
+
+absl::StatusOr<v1::ListScenesResponse> ListScenes(Connection& connection) {
+  v1::ListScenesResponse all;
+  v1::ListScenesRequest request;
+  request.set_page_size(1000);
+  do {
+    v1::ListScenesResponse response;
+    const absl::Status status =
+        connection.Call(connection.scenes(), &v1::SceneService::Stub::ListScenes, request, response);
+    if (!status.ok()) return status;
+    all.mutable_scenes()->MergeFrom(response.scenes());
+    request.set_page_token(response.next_page_token());
+  } while (!request.page_token().empty());
+  return all;
+}
+
+std::string ShortName(const v1::SceneInfo& scene) {
+  const std::string id = scene.name().substr(scene.name().find('/') + 1);
+  return scene.gallery() ? "gallery:" + id : id;
+}
+
+std::string SceneListText(const v1::ListScenesResponse& list) {
+  std::vector<std::vector<std::string>> rows;
+  for (const v1::SceneInfo& scene : list.scenes())
+    rows.push_back({ShortName(scene), Printable(scene.gallery() ? scene.description() : scene.title()),
+                    scene.gallery() ? "" : FormatBytes(scene.bytes())});
+  return FormatTable(rows);
+}
+
+// `scenes NAME`: the scene itself, as a file to start from.
+CommandResult PrintScene(Connection& connection, const std::string& text) {
+  constexpr std::string_view kGallery = "gallery:";
+  const std::string id = text.starts_with(kGallery)    ? text.substr(kGallery.size())
+                         : text.starts_with("scenes/") ? text.substr(text.find('/') + 1)
+                                                       : text;
+  v1::GetSceneRequest request;
+  request.set_name("scenes/" + id);
+  v1::GetSceneResponse response;
+  const absl::Status status =
+      connection.Call(connection.scenes(), &v1::SceneService::Stub::GetScene, request, response);
+  if (status.code() == absl::StatusCode::kNotFound || status.code() == absl::StatusCode::kInvalidArgument)
+    return UsageError("there is no scene '" + text + "'; `flatlight scenes` lists them");
+  if (!status.ok()) return status;
+  return Answer(ToJson(response.scene()));
+}
+
+std::string TraitsText(const SceneArgument& scene, const v1::ValidateSceneResponse& response) {
+  const v1::SceneTraits& traits = response.traits();
+  return FormatTable({{scene.label, "is a good scene"},
+                      {"curves", FormatExactly(traits.curves()) + " (" + Plural(traits.elements(), "piece") + ", " +
+                                     Plural(traits.emitters(), "emitter") + ")"},
+                      {"probes", Plural(traits.probe_points(), "point")},
+                      {"spectra", traits.grey() ? "grey" : "coloured"},
+                      {"largest reflectance", FormatExactly(traits.max_reflectance())},
+                      {"world", response.world_hash()},
+                      {"probes' hash", response.probe_hash()}});
+}
+
+}  // namespace
+
+CommandResult Scenes(const CommandLine& line, Interruption& interruption) {
+  const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
+  if (!session.ok()) return session.status();
+  if (!line.scene.empty()) return PrintScene((*session)->connection(), line.scene);
+  const auto list = ListScenes((*session)->connection());
+  if (!list.ok()) return (*session)->Explain(list.status());
+  return Answer(line.json ? ToJson(*list) : SceneListText(*list));
+}
+
+CommandResult Explain(const CommandLine& line, Interruption& interruption) {
+  const auto scene = ParseSceneArgument(line.scene);
+  if (!scene.ok()) return scene.status();
+  if (const absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
+  const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
+  if (!session.ok()) return session.status();
+  Connection& connection = (*session)->connection();
+  const auto source = ProvideScene(connection, *scene);
+  if (!source.ok()) return (*session)->Explain(source.status());
+  v1::ExplainJobRequest request;
+  *request.mutable_scene() = *source;
+  *request.mutable_settings() = line.settings;
+  v1::ExplainJobResponse response;
+  const absl::Status status =
+      connection.Call(connection.render(), &v1::RenderService::Stub::ExplainJob, request, response);
+  if (!status.ok()) return ExplainSceneError(connection, *scene, *source, (*session)->Explain(status));
+  return Answer(line.json ? ToJson(response.plan()) : PlanText(response.plan()));
+}
+
+CommandResult Validate(const CommandLine& line, Interruption& interruption) {
+  const auto scene = ParseSceneArgument(line.scene);
+  if (!scene.ok()) return scene.status();
+  if (const absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
+  const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
+  if (!session.ok()) return session.status();
+  Connection& connection = (*session)->connection();
+  const auto source = ProvideScene(connection, *scene);
+  if (!source.ok()) return (*session)->Explain(source.status());
+  const auto response = ValidateScene(connection, *source);
+  if (!response.ok()) return ExplainSceneError(connection, *scene, *source, (*session)->Explain(response.status()));
+  if (line.json)
+    if (const absl::Status printed = PrintBytes(ToJson(*response)); !printed.ok()) return printed;
+  if (!response->diagnostics().empty()) return UsageError(DiagnosticLines(*scene, *response));
+  return line.json || line.quiet ? ExitCode::kDone : Answer(TraitsText(*scene, *response));
+}
+
+}  // namespace flatlight

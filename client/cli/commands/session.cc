@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/commands/session.h"
+
+#include <cstdlib>
+#include <string>
+#include <utility>
+
+#include "client/cli/status/exit_code.h"
+
+namespace flatlight {
+namespace {
+
+std::string Variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Session>> Session::Open(const CommandLine& line, WithoutServer without,
+                                                       Interruption& interruption) {
+  auto session = std::make_unique<Session>();
+  std::string text = line.server, source = "--server", token = Variable("FLATLIGHT_TOKEN");
+  if (text.empty()) {
+    text = Variable("FLATLIGHT_SERVER");
+    source = "FLATLIGHT_SERVER";
+  }
+  if (text.empty()) {
+    if (without == WithoutServer::kRefuse)
+      return UsageError(
+          "`flatlight " + line.command +
+          "` needs a server, as jobs outlive the command: give --server HOST:PORT or set FLATLIGHT_SERVER");
+    auto server = PrivateServer::Start();
+    if (!server.ok()) return server.status();
+    session->server_ = *std::move(server);
+    if (const absl::Status ready = session->server_->WaitUntilReady(interruption); !ready.ok()) return ready;
+    text = session->server_->address();
+    token = session->server_->token();
+  }
+  const auto address = ParseServerAddress(text, source);
+  if (!address.ok()) return address.status();
+  auto connection = Connection::Open(*address, token, interruption);
+  if (!connection.ok()) return session->Explain(connection.status());
+  session->connection_ = *std::move(connection);
+  return session;
+}
+
+absl::Status Session::Explain(const absl::Status& error) {
+  if (error.code() != absl::StatusCode::kUnavailable) return error;
+  const absl::Status alive = CheckServer();
+  return alive.ok() ? error : alive;
+}
+
+}  // namespace flatlight

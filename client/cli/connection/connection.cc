@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/connection/connection.h"
+
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
+
+#include <utility>
+
+#include "client/cli/status/exit_code.h"
+#include "client/cli/status/rpc_error.h"
+
+namespace flatlight {
+namespace {
+
+constexpr std::chrono::seconds kDeadline{60};  // Of a unary call; each answers at once or after a short wait.
+
+std::shared_ptr<grpc::Channel> NewChannel(const ServerAddress& address) {
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(-1);  // The server bounds what it sends.
+  arguments.SetUserAgentPrefix("flatlight");
+  // The defaults wait a second before the second try, long for a server that is just starting.
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 20);
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1000);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
+  if (address.local) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  return grpc::CreateCustomChannel(address.target, grpc::InsecureChannelCredentials(), arguments);
+}
+
+}  // namespace
+
+Connection::Connection(ServerAddress address, std::string token, Interruption& interruption)
+    : address_(std::move(address)), token_(std::move(token)), interruption_(interruption) {
+  const std::shared_ptr<grpc::Channel> channel = NewChannel(address_);
+  render_ = v1::RenderService::NewStub(channel);
+  scenes_ = v1::SceneService::NewStub(channel);
+  server_ = v1::ServerService::NewStub(channel);
+}
+
+absl::StatusOr<std::unique_ptr<Connection>> Connection::Open(const ServerAddress& address, const std::string& token,
+                                                             Interruption& interruption) {
+  std::unique_ptr<Connection> connection(new Connection(address, token, interruption));
+  if (const absl::Status status = connection->ReadCapabilities(); !status.ok()) return status;
+  return connection;
+}
+
+std::unique_ptr<grpc::ClientContext> Connection::NewContext() const {
+  auto context = std::make_unique<grpc::ClientContext>();
+  if (!token_.empty()) context->AddMetadata("authorization", "Bearer " + token_);
+  return context;
+}
+
+absl::Status Connection::Explain(const grpc::Status& status) const {
+  if (status.error_code() == grpc::StatusCode::CANCELLED && interruption_.Requested())
+    return InterruptedError("interrupted");
+  if (status.error_code() == grpc::StatusCode::UNAVAILABLE)
+    return absl::UnavailableError("cannot reach the server at " + address_.text + ": " + status.error_message());
+  if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED)
+    return absl::UnavailableError("the server at " + address_.text + " did not answer in time");
+  return ErrorFromRpc(status);
+}
+
+absl::Status Connection::Call(const std::function<grpc::Status(grpc::ClientContext*)>& call, OnSignal on_signal) {
+  const std::unique_ptr<grpc::ClientContext> context = NewContext();
+  context->set_deadline(std::chrono::system_clock::now() + kDeadline);
+  if (on_signal == OnSignal::kCancel) interruption_.Guard(context.get());
+  const grpc::Status status = call(context.get());
+  if (on_signal == OnSignal::kCancel) interruption_.Guard(nullptr);
+  return Explain(status);
+}
+
+absl::Status Connection::ReadCapabilities() {
+  const auto read = [this](grpc::ClientContext* context) {
+    return server_->GetCapabilities(context, v1::GetCapabilitiesRequest(), &capabilities_);
+  };
+  const absl::Status status = Call(
+      [&read](grpc::ClientContext* context) {
+        context->set_wait_for_ready(true);
+        context->set_deadline(std::chrono::system_clock::now() + kPatience);
+        const grpc::Status waited = read(context);
+        return waited.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED
+                   ? grpc::Status(grpc::StatusCode::UNAVAILABLE,
+                                  "no answer within " + std::to_string(kPatience.count()) + " s")
+                   : waited;
+      },
+      OnSignal::kCancel);
+  if (status.code() != absl::StatusCode::kUnavailable) return status;
+  // A call that does not wait knows why there is no connection.
+  const absl::Status reason = Call(
+      [&read](grpc::ClientContext* context) {
+        context->set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(1));
+        return read(context);
+      },
+      OnSignal::kCancel);
+  return reason.code() == absl::StatusCode::kUnavailable ? reason : status;
+}
+
+}  // namespace flatlight

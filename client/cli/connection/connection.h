@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// A channel to a server, with what every call needs: the token, a deadline, the user's Ctrl-C.
+#ifndef FLATLIGHT_CLIENT_CLI_CONNECTION_CONNECTION_H_
+#define FLATLIGHT_CLIENT_CLI_CONNECTION_CONNECTION_H_
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "client/cli/connection/interruption.h"
+#include "client/cli/connection/server_address.h"
+#include "flatlight/v1/render_service.grpc.pb.h"
+#include "flatlight/v1/scene_service.grpc.pb.h"
+#include "flatlight/v1/server_service.grpc.pb.h"
+
+namespace flatlight {
+
+class Connection {
+ public:
+  // How long Open waits for a server that does not answer (yet).
+  static constexpr std::chrono::seconds kPatience{5};
+
+  // Reads the server's capabilities, so an open connection is one that works. An empty token is not sent.
+  // UNAVAILABLE after kPatience, with the reason.
+  static absl::StatusOr<std::unique_ptr<Connection>> Open(const ServerAddress& address, const std::string& token,
+                                                          Interruption& interruption);
+
+  v1::RenderService::Stub& render() { return *render_; }
+  v1::SceneService::Stub& scenes() { return *scenes_; }
+  const v1::GetCapabilitiesResponse& capabilities() const { return capabilities_; }
+  const std::string& address() const { return address_.text; }
+  Interruption& interruption() { return interruption_; }
+
+  // A context with the token, for streams; see MessageStream.
+  std::unique_ptr<grpc::ClientContext> NewContext() const;
+
+  enum class OnSignal { kCancel, kGoOn };
+
+  // One unary call: Call(connection.render(), &v1::RenderService::Stub::GetJob, request, response). Errors name the
+  // server if it could not be reached; INTERRUPTED after a signal.
+  template <class Stub, class Request, class Response>
+  absl::Status Call(Stub& stub, grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
+                    const Request& request, Response& response, OnSignal on_signal = OnSignal::kCancel) {
+    return Call([&](grpc::ClientContext* context) { return (stub.*method)(context, request, &response); }, on_signal);
+  }
+
+  // What the user is told about a call that ended so.
+  absl::Status Explain(const grpc::Status& status) const;
+
+ private:
+  Connection(ServerAddress address, std::string token, Interruption& interruption);
+  absl::Status Call(const std::function<grpc::Status(grpc::ClientContext*)>& call, OnSignal on_signal);
+  absl::Status ReadCapabilities();
+
+  ServerAddress address_;
+  std::string token_;
+  Interruption& interruption_;
+  std::unique_ptr<v1::RenderService::Stub> render_;
+  std::unique_ptr<v1::SceneService::Stub> scenes_;
+  std::unique_ptr<v1::ServerService::Stub> server_;
+  v1::GetCapabilitiesResponse capabilities_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CLIENT_CLI_CONNECTION_CONNECTION_H_

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/formats/csv.h"
+
+#include "client/cli/formats/result_columns.h"
+#include "client/cli/text/numbers.h"
+
+namespace flatlight {
+namespace {
+
+std::string Quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+}  // namespace
+
+std::string ResultToCsv(const v1::RenderResult& result) {
+  const std::vector<ResultColumn> columns = ResultColumnsOf(result);
+  const int channels = ResultChannels(result);
+  const auto width = [channels](const ResultColumn& column) { return column.spectral() ? channels : 1; };
+
+  std::string csv = "probe,index";
+  for (const ResultColumn& column : columns)
+    for (int channel = 0; channel < width(column); ++channel)
+      csv += ',' + column.name + (width(column) == 3 ? std::string(1, "RGB"[channel]) : "");
+  csv += '\n';
+
+  for (const v1::ProbeResult& probe : result.probes()) {
+    const std::string name = Quoted(probe.name());
+    for (int point = 0; point < static_cast<int>(probe.count()); ++point) {
+      csv += name + ',' + std::to_string(point);
+      for (const ResultColumn& column : columns)
+        for (int channel = 0; channel < width(column); ++channel) {
+          csv += ',';
+          if (!column.values(probe).empty()) csv += FormatExactly(ColumnValue(column, probe, point, channel));
+        }
+      csv += '\n';
+    }
+  }
+  return csv;
+}
+
+}  // namespace flatlight

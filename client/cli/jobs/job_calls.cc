@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/jobs/job_calls.h"
+
+#include "client/cli/connection/message_stream.h"
+#include "client/cli/formats/result_shape.h"
+#include "client/cli/jobs/job_name.h"
+#include "client/cli/status/exit_code.h"
+#include "client/cli/status/rpc_error.h"
+
+namespace flatlight {
+namespace {
+
+constexpr int kCreateTries = 3;
+constexpr std::chrono::seconds kSilence{30};
+
+}  // namespace
+
+absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource& scene, const v1::Settings& settings) {
+  v1::CreateJobRequest request;
+  *request.mutable_scene() = scene;
+  *request.mutable_settings() = settings;
+  request.set_request_id(NewUuid());
+  v1::Job job;
+  absl::Status status;
+  for (int tries = 0; tries < kCreateTries; ++tries) {
+    // It returns at once, and a job of which nobody knows could not be cancelled: so a signal has to wait.
+    status = connection.Call(connection.render(), &v1::RenderService::Stub::CreateJob, request, job,
+                             Connection::OnSignal::kGoOn);
+    if (status.ok()) return job;
+    if (status.code() != absl::StatusCode::kUnavailable) break;
+    if (!connection.interruption().Sleep(std::chrono::milliseconds(200))) return InterruptedError("interrupted");
+  }
+  return status;
+}
+
+absl::StatusOr<v1::Job> GetJob(Connection& connection, const std::string& name) {
+  v1::GetJobRequest request;
+  request.set_name(name);
+  v1::Job job;
+  const absl::Status status = connection.Call(connection.render(), &v1::RenderService::Stub::GetJob, request, job);
+  if (!status.ok()) return status;
+  return job;
+}
+
+absl::StatusOr<v1::Job> CancelJob(Connection& connection, const std::string& name) {
+  v1::CancelJobRequest request;
+  request.set_name(name);
+  v1::Job job;
+  const absl::Status status = connection.Call(connection.render(), &v1::RenderService::Stub::CancelJob, request, job,
+                                              Connection::OnSignal::kGoOn);
+  if (!status.ok()) return status;
+  return job;
+}
+
+absl::StatusOr<v1::RenderResult> FetchResult(Connection& connection, const std::string& name) {
+  v1::GetResultRequest request;
+  request.set_name(name);
+  MessageStream<v1::GetResultResponse> stream(
+      connection, [&](grpc::ClientContext* context, grpc::CompletionQueue* queue) {
+        return connection.render().PrepareAsyncGetResult(context, request, queue);
+      });
+  std::string bytes;
+  double total = 0;
+  v1::GetResultResponse chunk;
+  while (stream.Next(chunk, kSilence)) {
+    bytes += chunk.data();
+    total = chunk.total_bytes();
+  }
+  const grpc::Status status = stream.Finish();
+  if (!status.ok()) return connection.Explain(status);
+  v1::RenderResult result;
+  if (static_cast<double>(bytes.size()) != total || !result.ParseFromString(bytes))
+    return JobError("the server sent a broken result: " + std::to_string(bytes.size()) + " bytes");
+  const std::string defect = FindResultDefect(result);
+  if (!defect.empty()) return JobError("the server sent a broken result: " + defect);
+  return result;
+}
+
+absl::Status CheckSuccess(const v1::Job& job) {
+  switch (job.state()) {
+    case v1::Job::SUCCEEDED:
+      return absl::OkStatus();
+    case v1::Job::CANCELLED:
+      return JobError(job.name() + " was cancelled");
+    default: {
+      const absl::Status reason = ErrorFromRpc(job.error());
+      return JobError(job.name() + " failed: " + std::string(reason.message().data(), reason.message().size()));
+    }
+  }
+}
+
+}  // namespace flatlight

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CLIENT_CLI_JOBS_JOB_CALLS_H_
+#define FLATLIGHT_CLIENT_CLI_JOBS_JOB_CALLS_H_
+
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "client/cli/connection/connection.h"
+
+namespace flatlight {
+
+// Repeats itself if the server was lost on the way; a request id makes sure that there is one job.
+absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource& scene, const v1::Settings& settings);
+
+absl::StatusOr<v1::Job> GetJob(Connection& connection, const std::string& name);
+
+// Works also after a signal.
+absl::StatusOr<v1::Job> CancelJob(Connection& connection, const std::string& name);
+
+// The result of an ended job, checked to be whole.
+absl::StatusOr<v1::RenderResult> FetchResult(Connection& connection, const std::string& name);
+
+// OK if the job succeeded, else why not: ends with ExitCode::kJobFailed.
+absl::Status CheckSuccess(const v1::Job& job);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CLIENT_CLI_JOBS_JOB_CALLS_H_

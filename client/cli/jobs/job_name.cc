@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/jobs/job_name.h"
+
+#include <sys/random.h>
+
+#include <array>
+
+#include "client/cli/status/exit_code.h"
+
+namespace flatlight {
+namespace {
+
+const std::string kPrefix = "jobs/";
+constexpr std::size_t kUuidLength = 36;
+
+bool IsUuidBeginning(const std::string& text) {
+  if (text.empty() || text.size() > kUuidLength) return false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool dash = i == 8 || i == 13 || i == 18 || i == 23;
+    const bool digit = (text[i] >= '0' && text[i] <= '9') || (text[i] >= 'a' && text[i] <= 'f');
+    if (dash ? text[i] != '-' : !digit) return false;
+  }
+  return true;
+}
+
+std::string WithoutPrefix(const std::string& text) {
+  return text.starts_with(kPrefix) ? text.substr(kPrefix.size()) : text;
+}
+
+}  // namespace
+
+std::string NewUuid() {
+  std::array<unsigned char, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return "";
+  bytes[6] = static_cast<unsigned char>((bytes[6] & 0x0F) | 0x40);
+  bytes[8] = static_cast<unsigned char>((bytes[8] & 0x3F) | 0x80);
+  std::string uuid;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    if (i == 4 || i == 6 || i == 8 || i == 10) uuid += '-';
+    uuid += "0123456789abcdef"[bytes[i] >> 4];
+    uuid += "0123456789abcdef"[bytes[i] & 15];
+  }
+  return uuid;
+}
+
+bool IsWholeJobName(const std::string& text) {
+  const std::string uuid = WithoutPrefix(text);
+  return uuid.size() == kUuidLength && IsUuidBeginning(uuid);
+}
+
+absl::StatusOr<std::string> MatchJobName(const std::string& text, const std::vector<std::string>& all) {
+  const std::string beginning = WithoutPrefix(text);
+  if (!IsUuidBeginning(beginning))
+    return UsageError("'" + text + "' is not a job; must be jobs/UUID, the UUID, or the beginning of one");
+  if (beginning.size() == kUuidLength) return kPrefix + beginning;
+  std::vector<std::string> matches;
+  for (const std::string& name : all)
+    if (name.starts_with(kPrefix + beginning)) matches.push_back(name);
+  if (matches.size() == 1) return matches[0];
+  if (matches.empty()) return UsageError("no job begins with '" + beginning + "'; `flatlight jobs` lists them");
+  std::string message = std::to_string(matches.size()) + " jobs begin with '" + beginning + "':";
+  for (std::size_t i = 0; i < matches.size() && i < 5; ++i) message += " " + WithoutPrefix(matches[i]);
+  return UsageError(message + (matches.size() > 5 ? " ..." : ""));
+}
+
+absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection) {
+  std::vector<v1::Job> jobs;
+  v1::ListJobsRequest request;
+  request.set_page_size(1000);
+  do {
+    v1::ListJobsResponse response;
+    const absl::Status status =
+        connection.Call(connection.render(), &v1::RenderService::Stub::ListJobs, request, response);
+    if (!status.ok()) return status;
+    jobs.insert(jobs.end(), response.jobs().begin(), response.jobs().end());
+    request.set_page_token(response.next_page_token());
+  } while (!request.page_token().empty());
+  return jobs;
+}
+
+absl::StatusOr<std::string> ResolveJobName(Connection& connection, const std::string& text) {
+  std::vector<std::string> names;
+  if (!IsWholeJobName(text) && IsUuidBeginning(WithoutPrefix(text))) {
+    const auto jobs = ListJobs(connection);
+    if (!jobs.ok()) return jobs.status();
+    for (const v1::Job& job : *jobs) names.push_back(job.name());
+  }
+  return MatchJobName(text, names);
+}
+
+}  // namespace flatlight

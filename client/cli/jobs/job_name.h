@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CLIENT_CLI_JOBS_JOB_NAME_H_
+#define FLATLIGHT_CLIENT_CLI_JOBS_JOB_NAME_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/cli/connection/connection.h"
+
+namespace flatlight {
+
+// A random UUID (RFC 4122, version 4).
+std::string NewUuid();
+
+// "jobs/{uuid}" from that, from a UUID, or (through `all`, every job's name) from the beginning of one. Errors end with
+// ExitCode::kUsage.
+absl::StatusOr<std::string> MatchJobName(const std::string& text, const std::vector<std::string>& all);
+
+// Whether `text` is a whole name, so that nobody needs to be asked.
+bool IsWholeJobName(const std::string& text);
+
+// Every job that the server keeps, newest first.
+absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection);
+
+// MatchJobName with the server's jobs, which are listed only if they are needed.
+absl::StatusOr<std::string> ResolveJobName(Connection& connection, const std::string& text);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CLIENT_CLI_JOBS_JOB_NAME_H_

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/jobs/watch.h"
+
+#include <algorithm>
+#include <random>
+
+#include "client/cli/connection/message_stream.h"
+#include "client/cli/status/exit_code.h"
+#include "client/cli/text/numbers.h"
+
+namespace flatlight {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+// Whether the same call may well succeed a little later.
+bool MayComeBack(const grpc::Status& status) {
+  switch (status.error_code()) {
+    case grpc::StatusCode::OK:  // Ended too early.
+    case grpc::StatusCode::UNAVAILABLE:
+    case grpc::StatusCode::DEADLINE_EXCEEDED:
+    case grpc::StatusCode::CANCELLED:
+    case grpc::StatusCode::ABORTED:
+    case grpc::StatusCode::INTERNAL:  // Also gRPC's own, of a broken connection.
+    case grpc::StatusCode::UNKNOWN:
+      return true;
+    default:
+      return false;
+  }
+}
+
+class Watch {
+ public:
+  Watch(Connection& connection, const std::string& name, const WatchOptions& options)
+      : connection_(connection), options_(options) {
+    request_.set_name(name);
+    request_.set_max_rate(options.max_rate);
+  }
+
+  absl::StatusOr<v1::Job> Run() {
+    for (;;) {
+      const grpc::Status status = ReadStream();
+      if (HasEnded(job_.state())) return job_;
+      if (connection_.interruption().Requested()) return InterruptedError("interrupted");
+      if (status.error_code() == grpc::StatusCode::NOT_FOUND && heard_anything_)
+        return JobError("the server no longer knows " + request_.name() + "; it was restarted, or the job deleted");
+      if (!MayComeBack(status)) return connection_.Explain(status);
+      if (const absl::Status wait = WaitForNextTry(status); !wait.ok()) return wait;
+    }
+  }
+
+ private:
+  grpc::Status ReadStream() {
+    MessageStream<v1::WatchJobResponse> stream(
+        connection_, [this](grpc::ClientContext* context, grpc::CompletionQueue* queue) {
+          return connection_.render().PrepareAsyncWatchJob(context, request_, queue);
+        });
+    v1::WatchJobResponse message;
+    while (stream.Next(message, options_.silence)) {
+      Take(message);
+      if (HasEnded(job_.state())) return grpc::Status::OK;
+    }
+    return stream.Finish();
+  }
+
+  void Take(const v1::WatchJobResponse& message) {
+    heard_anything_ = true;
+    failures_ = 0;
+    last_message_ = steady_clock::now();
+    if (!message.more()) {
+      request_.set_epoch(message.epoch());
+      request_.set_sequence(message.sequence());
+    }
+    if (!message.has_job()) return;
+    // Later messages leave out what never changes.
+    v1::Job job = message.job();
+    if (!job.has_plan()) {
+      job.set_scene(job_.scene());
+      *job.mutable_settings() = job_.settings();
+      *job.mutable_plan() = job_.plan();
+    }
+    job_ = std::move(job);
+    if (options_.on_update) options_.on_update(job_);
+  }
+
+  absl::Status WaitForNextTry(const grpc::Status& status) {
+    if (options_.check_server)
+      if (const absl::Status alive = options_.check_server(); !alive.ok()) return alive;
+    if (steady_clock::now() - last_message_ > options_.patience)
+      return absl::UnavailableError("lost the server at " + connection_.address() + " for more than " +
+                                    FormatSeconds(std::chrono::duration<double>(options_.patience).count()) + ": " +
+                                    status.error_message());
+    const double chance = std::uniform_real_distribution<double>(0, 1)(random_);
+    if (!connection_.interruption().Sleep(Backoff(++failures_, chance))) return InterruptedError("interrupted");
+    return absl::OkStatus();
+  }
+
+  Connection& connection_;
+  const WatchOptions& options_;
+  v1::WatchJobRequest request_;
+  v1::Job job_;
+  bool heard_anything_ = false;
+  int failures_ = 0;
+  steady_clock::time_point last_message_ = steady_clock::now();
+  std::minstd_rand random_{std::random_device()()};
+};
+
+}  // namespace
+
+bool HasEnded(v1::Job::State state) {
+  return state == v1::Job::SUCCEEDED || state == v1::Job::FAILED || state == v1::Job::CANCELLED;
+}
+
+absl::StatusOr<v1::Job> WatchJob(Connection& connection, const std::string& name, const WatchOptions& options) {
+  return Watch(connection, name, options).Run();
+}
+
+milliseconds Backoff(int failures, double chance) {
+  const double whole = std::min(2000.0, 50.0 * static_cast<double>(1 << std::clamp(failures - 1, 0, 10)));
+  return milliseconds(static_cast<long>(whole * (0.5 + 0.5 * chance)));
+}
+
+}  // namespace flatlight

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CLIENT_CLI_JOBS_WATCH_H_
+#define FLATLIGHT_CLIENT_CLI_JOBS_WATCH_H_
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "client/cli/connection/connection.h"
+
+namespace flatlight {
+
+struct WatchOptions {
+  double max_rate = 10;  // Updates a second.
+  // A stream that breaks is taken up again where it ended, for as long as no more than this passes without a message.
+  std::chrono::milliseconds patience = std::chrono::seconds(30);
+  std::chrono::milliseconds silence = std::chrono::seconds(25);  // Heartbeats come every 10 s.
+  std::function<void(const v1::Job&)> on_update;                 // With the newest state, never going back.
+  std::function<absl::Status()> check_server;  // Asked before every new try; an error ends the watch. May be empty.
+};
+
+bool HasEnded(v1::Job::State state);
+
+// Watches a job until it has ended and returns it. INTERRUPTED after a signal; the job goes on.
+absl::StatusOr<v1::Job> WatchJob(Connection& connection, const std::string& name, const WatchOptions& options);
+
+// The wait before try number `failures` (from 1): doubles from 50 ms to 2 s, of which a part in [1/2, 1] given by
+// `chance` in [0, 1), so that many watchers of a server that comes back do not call in step.
+std::chrono::milliseconds Backoff(int failures, double chance);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CLIENT_CLI_JOBS_WATCH_H_

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// flatlight: the command line. Talks to a server and does nothing else with light.
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+#include <string>
+
+#include "client/cli/commands/commands.h"
+#include "client/cli/outputs/outputs.h"
+
+namespace flatlight {
+namespace {
+
+ExitCode Fail(const absl::Status& status) {
+  std::istringstream lines(std::string(status.message().data(), status.message().size()));
+  for (std::string line; std::getline(lines, line);) std::fprintf(stderr, "flatlight: %s\n", line.c_str());
+  return ExitCodeOf(status);
+}
+
+// What was said but could not be written counts, too.
+ExitCode Close(ExitCode code) {
+  if (code != ExitCode::kDone || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
+  return Fail(OutputError("standard output", std::strerror(errno)));
+}
+
+ExitCode Main(int argc, char** argv) {
+  const auto line = ParseCommandLine(argc, argv, FLATLIGHT_VERSION);
+  if (!line.ok()) return Fail(line.status());
+  if (line->command.empty()) {
+    const absl::Status printed = PrintBytes(line->text);
+    return printed.ok() ? ExitCode::kDone : Fail(printed);
+  }
+  Interruption interruption;
+  const CommandResult result = RunCommand(*line, interruption);
+  return result.ok() ? Close(*result) : Fail(result.status());
+}
+
+}  // namespace
+}  // namespace flatlight
+
+int main(int argc, char** argv) {
+  // Broken pipes and file size limits are errors of the write that meets them.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  setenv("GRPC_VERBOSITY", "NONE", 0);  // Its log lines would come between ours; its errors reach us as results.
+  return static_cast<int>(flatlight::Main(argc, argv));
+}

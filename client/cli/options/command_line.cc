@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only file that includes CLI11, which takes long to compile.
+#include "client/cli/options/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <limits>
+#include <sstream>
+
+#include "client/cli/options/help_texts.h"
+#include "client/cli/options/settings_options.h"
+#include "client/cli/status/exit_code.h"
+
+namespace flatlight {
+namespace {
+
+struct Raw {
+  CommandLine line;
+  SettingsOptions settings;
+  std::optional<std::string> tolerance;
+  std::optional<std::string> server;
+};
+
+CLI::App& AddCommand(CLI::App& app, const std::string& name, const std::string& description, const char* footer = "") {
+  CLI::App& command = *app.add_subcommand(name, description);
+  command.footer(footer);
+  return command;
+}
+
+void AddServer(CLI::App& app, Raw& raw) {
+  app.add_option("--server", raw.server, "HOST:PORT or unix:PATH (or FLATLIGHT_SERVER)");
+}
+
+void AddJson(CLI::App& app, Raw& raw, const std::string& what) {
+  app.add_flag("--json", raw.line.json, "print " + what + " as JSON on standard output");
+}
+
+void AddQuiet(CLI::App& app, Raw& raw) { app.add_flag("-q,--quiet", raw.line.quiet, "say nothing but errors"); }
+
+void AddScene(CLI::App& app, Raw& raw) {
+  app.add_option("SCENE", raw.line.scene, "a scene file, - (standard input) or gallery:NAME")->required();
+}
+
+void AddJob(CLI::App& app, Raw& raw) { app.add_option("JOB", raw.line.job, "the job")->required(); }
+
+void AddOutputs(CLI::App& app, Raw& raw) {
+  app.add_option("-o,--output", raw.line.outputs, "write the result to OUT; may be repeated")
+      ->type_name("OUT")
+      ->allow_extra_args(false);
+}
+
+void AddSettings(CLI::App& app, Raw& raw) {
+  SettingsOptions& settings = raw.settings;
+  app.add_option("--method", settings.method, "exact (direct light) or path-tracing")->type_name("NAME");
+  app.add_option("--samples", settings.samples, "paths a point (default 1024)")->type_name("N");
+  app.add_option("--max-bounces", settings.max_bounces, "reflections; 0 is direct light (default: all)")
+      ->type_name("N");
+  app.add_option("--seed", settings.seed, "another seed, an independent result (default 0)")->type_name("N");
+  app.add_option("--derivatives", settings.derivatives, "none, gradient or hessian (default: all the method gives)")
+      ->type_name("NAME");
+  app.add_option("--target-error", settings.target_error, "stop at this relative standard error, in (0, 1]")
+      ->type_name("E");
+  app.add_option("--time-limit", settings.time_limit, "stop after so many seconds")->type_name("S");
+  app.add_option("--threads", settings.threads, "at most so many (default: all the server's)")->type_name("N");
+  app.add_option("--no-skip", settings.no_skip, "do work that could be left out, see explain; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+}
+
+void AddSceneCommands(CLI::App& app, Raw& raw) {
+  for (const char* name : {"render", "submit", "explain"}) {
+    const bool render = std::string(name) == "render";
+    const bool submit = std::string(name) == "submit";
+    CLI::App& command = AddCommand(app, name,
+                                   render   ? "render a scene and wait for the result"
+                                   : submit ? "start a job on a server"
+                                            : "show the plan for a scene, with reasons and expected cost",
+                                   render   ? kRenderHelp
+                                   : submit ? kSubmitHelp
+                                            : kExplainHelp);
+    AddScene(command, raw);
+    AddSettings(command, raw);
+    if (render) AddOutputs(command, raw);
+    AddJson(command, raw, render ? "the result" : submit ? "the job" : "the plan");
+    if (render || submit) AddQuiet(command, raw);
+    AddServer(command, raw);
+  }
+  CLI::App& validate = AddCommand(app, "validate", "report every mistake of a scene");
+  AddScene(validate, raw);
+  AddJson(validate, raw, "the report");
+  AddQuiet(validate, raw);
+  AddServer(validate, raw);
+  CLI::App& scenes = AddCommand(app, "scenes", "list the gallery and uploaded scenes, or print one", kScenesHelp);
+  scenes.add_option("NAME", raw.line.scene, "print this scene file");
+  AddJson(scenes, raw, "the list");
+  AddServer(scenes, raw);
+}
+
+void AddJobCommands(CLI::App& app, Raw& raw) {
+  CLI::App& watch = AddCommand(app, "watch", "follow a job until it has ended", kWatchHelp);
+  AddJob(watch, raw);
+  AddJson(watch, raw, "the ended job");
+  AddQuiet(watch, raw);
+  CLI::App& jobs = AddCommand(app, "jobs", "list the jobs of a server");
+  AddJson(jobs, raw, "the list");
+  CLI::App& show = AddCommand(app, "show", "show a job", kJobHelp);
+  AddJob(show, raw);
+  AddJson(show, raw, "the job");
+  CLI::App& fetch = AddCommand(app, "fetch", "get the result of an ended job", kFetchHelp);
+  AddJob(fetch, raw);
+  AddOutputs(fetch, raw);
+  AddJson(fetch, raw, "the result");
+  AddQuiet(fetch, raw);
+  CLI::App& cancel = AddCommand(app, "cancel", "stop a job", kJobHelp);
+  AddJob(cancel, raw);
+  AddJson(cancel, raw, "the job");
+  AddQuiet(cancel, raw);
+  for (CLI::App* command : {&watch, &jobs, &show, &fetch, &cancel}) AddServer(*command, raw);
+}
+
+void AddCompare(CLI::App& app, Raw& raw) {
+  CLI::App& compare = AddCommand(app, "compare", "error of one result against another", kCompareHelp);
+  compare.add_option("RESULTS", raw.line.results, "A and B: two results in JSON form")->required()->expected(2);
+  compare.add_option("--tolerance", raw.tolerance, "the largest relative difference")->type_name("X");
+  AddJson(compare, raw, "the report");
+  AddQuiet(compare, raw);
+}
+
+absl::StatusOr<CommandLine> Finish(const CLI::App& app, Raw& raw) {
+  raw.line.command = app.get_subcommands().front()->get_name();
+  absl::StatusOr<v1::Settings> settings = ParseSettings(raw.settings);
+  if (!settings.ok()) return settings.status();
+  raw.line.settings = *std::move(settings);
+  if (raw.server) {
+    if (raw.server->empty()) return UsageError("--server: ''; must be HOST:PORT or unix:PATH");
+    raw.line.server = *raw.server;
+  }
+  if (raw.tolerance) {
+    const auto tolerance =
+        ParseNumber("--tolerance", *raw.tolerance, Zero::kAllowed, std::numeric_limits<double>::max());
+    if (!tolerance.ok()) return tolerance.status();
+    raw.line.tolerance = *tolerance;
+  }
+  return raw.line;
+}
+
+}  // namespace
+
+absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv, const std::string& version) {
+  Raw raw;
+  CLI::App app("Flatlight: global illumination in the plane, with the error of every number.", "flatlight");
+  app.get_formatter()->column_width(28);
+  app.require_subcommand(1);
+  app.footer(kMainHelp);
+  app.set_version_flag("--version", "flatlight " + version, "print the version");
+  AddServer(app, raw);
+  AddSceneCommands(app, raw);
+  AddJobCommands(app, raw);
+  AddCompare(app, raw);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out, errors;
+    if (app.exit(error, out, errors) == 0) {
+      raw.line.text = out.str();
+      return raw.line;
+    }
+    const auto chosen = app.get_subcommands();
+    const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+    return UsageError(std::string(error.what()) + "; see flatlight" + command + " --help");
+  }
+  return Finish(app, raw);
+}
+
+}  // namespace flatlight

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CLIENT_CLI_OPTIONS_COMMAND_LINE_H_
+#define FLATLIGHT_CLIENT_CLI_OPTIONS_COMMAND_LINE_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "flatlight/v1/settings.pb.h"
+
+namespace flatlight {
+
+struct CommandLine {
+  std::string command;  // "render", "submit", ... Empty if all that is wanted is `text`.
+  std::string text;     // Help or version, to print.
+  std::string server;   // Of --server; empty if not given.
+  bool json = false;
+  bool quiet = false;
+  std::string scene;  // SCENE as written; of `scenes`, the name of one, or empty.
+  std::string job;    // JOB as written.
+  v1::Settings settings;
+  std::vector<std::string> outputs;
+  std::vector<std::string> results;  // The two files of `compare`.
+  std::optional<double> tolerance;   // Of `compare`.
+};
+
+// Errors end with ExitCode::kUsage.
+absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv, const std::string& version);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CLIENT_CLI_OPTIONS_COMMAND_LINE_H_

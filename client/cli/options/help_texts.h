@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What --help says below the options.
+#ifndef FLATLIGHT_CLIENT_CLI_OPTIONS_HELP_TEXTS_H_
+#define FLATLIGHT_CLIENT_CLI_OPTIONS_HELP_TEXTS_H_
+
+namespace flatlight {
+
+inline constexpr char kMainHelp[] = R"(
+Examples:
+  flatlight scenes                                          what there is to start with
+  flatlight render gallery:penumbra -o out.json -o out.svg  render, write the result and a plot
+  flatlight explain scene.json --method path-tracing        what would be done, and why
+  flatlight submit scene.json --server farm:7000            leave the work to a server
+  flatlight compare mine.json reference.json                are they equal within their errors?
+
+Environment:
+  FLATLIGHT_SERVER  the server, if there is no --server: HOST:PORT or unix:PATH
+  FLATLIGHT_TOKEN   the token that the server asks for (the connection is not encrypted: use a tunnel between machines)
+Without a server, render, scenes, explain and validate start one of their own for as long as they run.
+
+Exit status:
+  0 done   1 the job failed   2 bad usage or bad scene   3 server not reached   4 denied or over quota
+  5 an output could not be written   10 compare found a difference   130 interrupted)";
+
+inline constexpr char kRenderHelp[] = R"(
+The ending of OUT picks its form:
+  .json        the whole result (RenderResult of the API); - writes it to standard output
+  .csv         a row a point: probe, index, x, y, nx, ny, arcLength, irradiance, standardError, gradient, gradientError,
+               hessian, hessianError, samples; only what there is. In colour irradianceR, irradianceG, irradianceB, ...
+  .npy         the same for numpy.load: a structured array, an element a point; probe is the probe's number,
+               spectral fields have shape (3,) in colour
+  .svg .png    a plot: irradiance over arc length with a band of two standard errors, derivatives below (needs gnuplot)
+  .exr .hdr    pictures of irradiance, a pixel a point; .exr has a part for each probe, .hdr a row
+Files are written under a temporary name and then renamed, so they are there whole or not at all.
+Ctrl-C cancels the job.
+
+Examples:
+  flatlight render scene.json --samples 4096 -o result.json -o plot.png
+  flatlight render gallery:unit-light --method exact --derivatives hessian -o - | jq .probes[0].irradiance
+  flatlight render - --target-error 0.01 --time-limit 60 -o result.csv < scene.json)";
+
+inline constexpr char kSubmitHelp[] = R"(
+Prints the name of the job, and returns at once.
+
+Example:
+  job=$(flatlight submit scene.json --samples 100000 --quiet)
+  flatlight watch $job && flatlight fetch $job -o result.json)";
+
+inline constexpr char kWatchHelp[] = R"(
+Waits until the job has ended, and takes up a broken connection again by itself. Ctrl-C stops watching; the job goes on.
+JOB is jobs/UUID, a UUID, or the beginning of one.)";
+
+inline constexpr char kJobHelp[] = R"(
+JOB is jobs/UUID, a UUID, or the beginning of one.)";
+
+inline constexpr char kFetchHelp[] = R"(
+JOB is jobs/UUID, a UUID, or the beginning of one. It must have ended; of a cancelled one there is what was done.
+See `flatlight render --help` for the forms of OUT.)";
+
+inline constexpr char kScenesHelp[] = R"(
+Examples:
+  flatlight scenes
+  flatlight scenes penumbra > mine.json    a copy to change)";
+
+inline constexpr char kExplainHelp[] = R"(
+Renders nothing. Names in the list of skips are for --no-skip.)";
+
+inline constexpr char kCompareHelp[] = R"(
+A and B are results in JSON form with the same probes at the same points; B is the reference. Printed for irradiance and, if
+both have them, derivatives of each probe:
+  rms, max    of the difference A - B          relative rms    rms over the rms of B
+  z           difference / its standard error: mean z (0 without bias), mean z^2 (1 if the errors are honest)
+
+Verdict (exit status 0: equal, 10: they differ, 2: not comparable):
+  with --tolerance X   at every point |A - B| <= X * max(|B|, 1 % of the probe's mean |B|)
+  without              by the errors that the results state. At every point |A - B| must not exceed t * standard error +
+                       stated bounds + rounding; over each probe mean z and mean z^2 must agree with 0 and 1. t is
+                       Student's for 14 degrees of freedom such that equal results fail less than once in 10 000 times,
+                       whatever the number of points.
+
+Examples:
+  flatlight compare result.json reference.json
+  flatlight compare a.json b.json --tolerance 0.01 --json)";
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CLIENT_CLI_OPTIONS_HELP_TEXTS_H_

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/options/settings_options.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "client/cli/formats/enum_names.h"
+#include "client/cli/status/exit_code.h"
+#include "client/cli/text/numbers.h"
+
+namespace flatlight {
+namespace {
+
+using Text = std::optional<std::string>;
+
+absl::Status Refuse(const std::string& option, const std::string& text, const std::string& allowed) {
+  return UsageError(option + ": '" + text + "'; must be " + allowed);
+}
+
+template <class Number>
+bool ParseWhole(const std::string& text, Number& number) {
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && rest == end && !text.empty();
+}
+
+// Sets a field by a pointer to its setter.
+absl::Status SetCount(const std::string& option, const Text& text, std::uint32_t low, v1::Settings& settings,
+                      void (v1::Settings::*set)(std::uint32_t)) {
+  if (!text) return absl::OkStatus();
+  std::uint32_t value = 0;
+  if (!ParseWhole(*text, value) || value < low)
+    return Refuse(option, *text,
+                  "a whole number from " + std::to_string(low) + " to " +
+                      std::to_string(std::numeric_limits<std::uint32_t>::max()));
+  (settings.*set)(value);
+  return absl::OkStatus();
+}
+
+absl::Status SetNumber(const std::string& option, const Text& text, double high, v1::Settings& settings,
+                       void (v1::Settings::*set)(double)) {
+  if (!text) return absl::OkStatus();
+  const absl::StatusOr<double> value = ParseNumber(option, *text, Zero::kRefused, high);
+  if (!value.ok()) return value.status();
+  (settings.*set)(*value);
+  return absl::OkStatus();
+}
+
+template <class Enum>
+absl::Status SetChoice(const std::string& option, const Text& text, v1::Settings& settings,
+                       void (v1::Settings::*set)(Enum)) {
+  if (!text) return absl::OkStatus();
+  const auto& type = *google::protobuf::GetEnumDescriptor<Enum>();
+  if (const std::optional<int> value = OptionValue(type, *text)) {
+    (settings.*set)(static_cast<Enum>(*value));
+    return absl::OkStatus();
+  }
+  std::string allowed;
+  for (const std::string& name : OptionNames(type)) allowed += (allowed.empty() ? "" : ", ") + name;
+  return Refuse(option, *text, "one of " + allowed);
+}
+
+}  // namespace
+
+absl::StatusOr<double> ParseNumber(const std::string& option, const std::string& text, Zero zero, double high) {
+  double value = 0;
+  const bool parsed = ParseWhole(text, value) && std::isfinite(value);
+  if (parsed && value <= high && (value > 0 || (zero == Zero::kAllowed && value == 0))) return value;
+  const std::string low = zero == Zero::kAllowed ? " from 0" : " above 0";
+  const bool bounded = high < std::numeric_limits<double>::max();
+  return Refuse(option, text, "a number" + low + (bounded ? ", at most " + FormatValue(high) : ""));
+}
+
+absl::StatusOr<v1::Settings> ParseSettings(const SettingsOptions& options) {
+  using Settings = v1::Settings;
+  constexpr double kAny = std::numeric_limits<double>::max();
+  Settings settings;
+  const absl::Status results[] = {
+      SetChoice("--method", options.method, settings, &Settings::set_method),
+      SetCount("--samples", options.samples, 1, settings, &Settings::set_samples),
+      SetCount("--max-bounces", options.max_bounces, 0, settings, &Settings::set_max_bounces),
+      SetCount("--seed", options.seed, 0, settings, &Settings::set_seed),
+      SetChoice("--derivatives", options.derivatives, settings, &Settings::set_derivatives),
+      SetNumber("--target-error", options.target_error, 1, settings, &Settings::set_target_error),
+      SetNumber("--time-limit", options.time_limit, kAny, settings, &Settings::set_time_limit),
+      SetCount("--threads", options.threads, 1, settings, &Settings::set_threads)};
+  std::string mistakes;
+  for (const absl::Status& result : results)
+    if (!result.ok())
+      mistakes += (mistakes.empty() ? "" : "\n") + std::string(result.message().data(), result.message().size());
+  if (!mistakes.empty()) return UsageError(mistakes);
+  for (const std::string& name : options.no_skip) settings.add_no_skip(name);
+  return settings;
+}
+
+}  // namespace flatlight

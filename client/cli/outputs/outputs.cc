@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/outputs/outputs.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "client/cli/formats/csv.h"
+#include "client/cli/formats/gnuplot.h"
+#include "client/cli/formats/json_text.h"
+#include "client/cli/formats/npy.h"
+#include "client/cli/formats/plot_script.h"
+#include "client/cli/outputs/atomic_file.h"
+#include "client/cli/outputs/picture_writer.h"
+#include "client/cli/status/exit_code.h"
+
+namespace flatlight {
+namespace {
+
+constexpr std::array<std::pair<const char*, OutputForm>, 7> kForms = {{{".json", OutputForm::kJson},
+                                                                       {".csv", OutputForm::kCsv},
+                                                                       {".npy", OutputForm::kNpy},
+                                                                       {".svg", OutputForm::kSvg},
+                                                                       {".png", OutputForm::kPng},
+                                                                       {".exr", OutputForm::kExr},
+                                                                       {".hdr", OutputForm::kHdr}}};
+
+std::string Reason(const absl::Status& status) { return std::string(status.message().data(), status.message().size()); }
+
+absl::StatusOr<OutputForm> FormOf(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (const auto& [known, form] : kForms)
+    if (ending == known) return form;
+  return UsageError("--output: " + path + (ending.empty() ? " has no ending" : " has an unknown ending") +
+                    "; must end in one of " + OutputEndings() + ", or be - for JSON on standard output");
+}
+
+bool IsPlot(OutputForm form) { return form == OutputForm::kSvg || form == OutputForm::kPng; }
+bool IsPicture(OutputForm form) { return form == OutputForm::kExr || form == OutputForm::kHdr; }
+
+absl::Status CheckOutput(const Output& output) {
+  absl::Status tool = absl::OkStatus();
+  if (IsPlot(output.form)) tool = FindGnuplot();
+  if (IsPicture(output.form)) tool = FindPictureModule();
+  if (!tool.ok()) return OutputError(output.path, Reason(tool));
+  return CheckWritable(output.path);
+}
+
+absl::StatusOr<std::string> Bytes(const v1::RenderResult& result, OutputForm form) {
+  switch (form) {
+    case OutputForm::kCsv:
+      return ResultToCsv(result);
+    case OutputForm::kNpy:
+      return ResultToNpy(result);
+    case OutputForm::kSvg:
+      return RunGnuplot(PlotScript(result, PlotForm::kSvg));
+    case OutputForm::kPng:
+      return RunGnuplot(PlotScript(result, PlotForm::kPng));
+    default:
+      return ToJson(result);
+  }
+}
+
+absl::Status WritePictureFile(const v1::RenderResult& result, const Output& output) {
+  std::vector<Picture> pictures = PicturesOf(result);
+  if (pictures.empty()) return OutputError(output.path, "the result has no points");
+  if (output.form == OutputForm::kHdr) pictures = {Stacked(pictures)};
+  auto file = AtomicFile::Create(output.path);
+  if (!file.ok()) return file.status();
+  const absl::Status written = WritePictures((*file)->temporary_path(), pictures);
+  if (!written.ok()) return OutputError(output.path, Reason(written));
+  return (*file)->Commit();
+}
+
+absl::Status WriteOutput(const v1::RenderResult& result, const Output& output) {
+  if (IsPicture(output.form)) return WritePictureFile(result, output);
+  const absl::StatusOr<std::string> bytes = Bytes(result, output.form);
+  if (!bytes.ok()) return OutputError(output.path, Reason(bytes.status()));
+  return output.path == "-" ? PrintBytes(*bytes) : WriteFileAtomically(output.path, *bytes);
+}
+
+}  // namespace
+
+std::string OutputEndings() {
+  std::string endings;
+  for (const auto& [ending, form] : kForms) endings += (endings.empty() ? "" : " ") + std::string(ending);
+  return endings;
+}
+
+absl::StatusOr<std::vector<Output>> PlanOutputs(const std::vector<std::string>& paths) {
+  std::vector<Output> outputs;
+  for (const std::string& path : paths) {
+    const auto same = [&path](const Output& output) { return output.path == path; };
+    if (std::any_of(outputs.begin(), outputs.end(), same)) return UsageError("--output: " + path + " is given twice");
+    if (path == "-") {
+      outputs.push_back({path, OutputForm::kJson});
+      continue;
+    }
+    const absl::StatusOr<OutputForm> form = FormOf(path);
+    if (!form.ok()) return form.status();
+    outputs.push_back({path, *form});
+  }
+  for (const Output& output : outputs) {
+    if (output.path == "-") continue;
+    if (const absl::Status status = CheckOutput(output); !status.ok()) return status;
+  }
+  return outputs;
+}
+
+bool WritesToStandardOutput(const std::vector<Output>& outputs) {
+  return std::any_of(outputs.begin(), outputs.end(), [](const Output& output) { return output.path == "-"; });
+}
+
+absl::Status WriteOutputs(const v1::RenderResult& result, const std::vector<Output>& outputs) {
+  std::string failures;
+  for (const Output& output : outputs) {
+    const absl::Status status = WriteOutput(result, output);
+    if (!status.ok()) failures += (failures.empty() ? "" : "\n") + Reason(status);
+  }
+  return failures.empty() ? absl::OkStatus() : absl::DataLossError(failures);
+}
+
+absl::Status PrintBytes(const std::string& bytes) {
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() && std::fflush(stdout) == 0;
+  return written ? absl::OkStatus() : OutputError("standard output", std::strerror(errno));
+}
+
+}  // namespace flatlight

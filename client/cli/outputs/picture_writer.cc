@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/outputs/picture_writer.h"
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "client/cli/picture/picture_module.h"
+
+namespace flatlight {
+namespace {
+
+std::string ModulePath() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return (program.parent_path() / "libflatlight_picture.so").string();
+}
+
+}  // namespace
+
+std::vector<Picture> PicturesOf(const v1::RenderResult& result) {
+  std::vector<Picture> pictures;
+  for (const v1::ProbeResult& probe : result.probes()) {
+    if (probe.count() == 0) continue;
+    Picture picture{probe.name(), static_cast<int>(probe.count()), 1, static_cast<int>(probe.channels()), {}};
+    for (const double value : probe.irradiance()) picture.pixels.push_back(static_cast<float>(value));
+    pictures.push_back(std::move(picture));
+  }
+  return pictures;
+}
+
+Picture Stacked(const std::vector<Picture>& pictures) {
+  Picture stacked;
+  stacked.height = static_cast<int>(pictures.size());
+  for (const Picture& picture : pictures) {
+    stacked.width = std::max(stacked.width, picture.width);
+    stacked.channels = std::max(stacked.channels, picture.channels);
+  }
+  for (const Picture& picture : pictures)
+    for (int x = 0; x < stacked.width; ++x)
+      for (int channel = 0; channel < stacked.channels; ++channel) {
+        const int source = x * picture.channels + std::min(channel, picture.channels - 1);
+        stacked.pixels.push_back(x < picture.width ? picture.pixels[static_cast<std::size_t>(source)] : 0.0F);
+      }
+  return stacked;
+}
+
+absl::Status FindPictureModule() {
+  const std::string path = ModulePath();
+  if (access(path.c_str(), R_OK) == 0) return absl::OkStatus();
+  return absl::FailedPreconditionError("pictures need " + path + ", which is not there");
+}
+
+absl::Status WritePictures(const std::string& path, const std::vector<Picture>& pictures) {
+  // Never unloaded: libraries below it register handlers that run at exit.
+  void* module = dlopen(ModulePath().c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (module == nullptr) return absl::FailedPreconditionError(dlerror());
+  const auto write = reinterpret_cast<FlatlightWritePictures>(dlsym(module, "flatlight_write_pictures"));
+  if (write == nullptr) return absl::FailedPreconditionError(dlerror());
+  std::vector<FlatlightPicture> rows;
+  for (const Picture& picture : pictures)
+    rows.push_back({picture.name.c_str(), picture.width, picture.height, picture.channels, picture.pixels.data()});
+  std::array<char, 1024> error{};
+  if (write(path.c_str(), rows.data(), static_cast<int>(rows.size()), error.data(), error.size()) == 0)
+    return absl::OkStatus();
+  return absl::InternalError(error.data());
+}
+
+}  // namespace flatlight
