@@ -38,6 +38,14 @@ std::string Wanted(const FieldDescriptor& field, bool element) {
   }
 }
 
+std::vector<std::string> MemberNames(const google::protobuf::OneofDescriptor& oneof) {
+  std::vector<std::string> names;
+  for (int i = 0; i < oneof.field_count(); ++i) names.push_back(oneof.field(i)->json_name());
+  return names;
+}
+
+std::uint64_t Bit(const FieldDescriptor& field) { return std::uint64_t{1} << static_cast<unsigned>(field.index()); }
+
 // The element that a mistake left out.
 void AddPlaceholder(Message& message, const FieldDescriptor& field) {
   if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
@@ -241,6 +249,15 @@ bool JsonMessageReader::end_object() { return Leave(); }
 
 bool JsonMessageReader::end_array() { return Leave(); }
 
+const JsonMessageReader::Member* JsonMessageReader::SeenRival(const Level& level, const Member& member) {
+  const auto* const oneof = member.field->real_containing_oneof();
+  if (oneof == nullptr) return nullptr;
+  for (const Member& other : *level.members) {
+    if (other.field->real_containing_oneof() == oneof && (level.seen & Bit(*other.field)) != 0) return &other;
+  }
+  return nullptr;
+}
+
 bool JsonMessageReader::key(const std::string& name) {
   if (skipped_levels_ > 0) return true;
   Level& level = levels_.back();
@@ -258,24 +275,16 @@ bool JsonMessageReader::key(const std::string& name) {
     refuse(name, "is not a known field; allowed here: " + Listed(FieldNames(*level.message->GetDescriptor())));
     return true;
   }
-  const std::uint64_t bit = std::uint64_t{1} << static_cast<unsigned>(member->field->index());
+  const std::uint64_t bit = Bit(*member->field);
   if ((level.seen & bit) != 0) {
     refuse(member->name, "is given twice" + (name == member->name ? "" : ", once as " + name) + "; once is allowed");
     return true;
   }
-  if (const auto* const oneof = member->field->real_containing_oneof()) {
-    std::vector<std::string> names;
-    const Field* earlier = nullptr;
-    for (int i = 0; i < oneof->field_count(); ++i) {
-      const Field* const other = oneof->field(i);
-      names.push_back(other->json_name());
-      if ((level.seen & (std::uint64_t{1} << static_cast<unsigned>(other->index()))) != 0) earlier = other;
-    }
-    if (earlier != nullptr) {
-      refuse(member->name, "comes after " + earlier->json_name() + "; only one of " + Listed(names) + " is allowed");
-      level.seen |= bit;
-      return true;
-    }
+  if (const Member* const rival = SeenRival(level, *member)) {
+    refuse(member->name, "comes after " + rival->name + "; only one of " +
+                             Listed(MemberNames(*member->field->real_containing_oneof())) + " is allowed");
+    level.seen |= bit;
+    return true;
   }
   level.seen |= bit;
   level.field = member->field;

@@ -90,6 +90,8 @@ class JsonMessageReader {
   };
 
   const Members& MembersOf(const google::protobuf::Descriptor& type);
+  // The member that was there and cannot be together with this one.
+  static const Member* SeenRival(const Level& level, const Member& member);
   std::optional<Slot> NextSlot(const std::string& found);
   void Number(double value, std::string_view text);
   void Refuse(const Slot& slot, const std::string& found);
