@@ -136,6 +136,25 @@ TEST(ExactTest, BlockerOfThePaper) {
   EXPECT_LT(value.hessian_error, 1e-12);
 }
 
+// The share of the light leaving one segment that reaches another, by strings drawn between their ends (Hottel 1954),
+// against the mean irradiance; both ways round.
+TEST(ExactTest, CrossedStrings) {
+  const Point2 a{0, 0}, b{1.5, 0.2}, c{1.2, 1.1}, d{-0.3, 0.8};
+  const double strings = (Length(d - b) + Length(c - a)) - (Length(d - a) + Length(c - b));
+  constexpr std::uint32_t kPoints = 4000;
+  for (const bool from_ab : {false, true}) {
+    SceneDescription scene = EmptyScene();
+    AddCurve(scene, SegmentDescription{a, b}, from_ab ? 1 : 0);
+    AddCurve(scene, SegmentDescription{c, d}, from_ab ? 0 : 1);
+    AddProbe(scene, from_ab ? 1 : 0, kPoints);
+    double mean = 0;
+    for (const WorldValue& value : Solve(*Build(scene), 0)) mean += value.irradiance / kPoints;
+    const double length = from_ab ? Length(d - c) : Length(b - a);
+    // E = 2 L F; the midpoint rule errs by h^2/24 times the difference of the end slopes.
+    EXPECT_NEAR(mean * length, strings, 1e-7) << from_ab;
+  }
+}
+
 TEST(ExactTest, FullDiscFollowsOneOverDistance) {
   SceneDescription scene = EmptyScene();
   AddCurve(scene, SegmentDescription{{-1, 0}, {1, 0}});
