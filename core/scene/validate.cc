@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/validate.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -16,13 +17,17 @@ std::string Number(double value) {
   return std::string(buffer, end.ptr);
 }
 
-// Cut to some 60 bytes, not inside a UTF-8 character: the API's strings must be UTF-8.
-std::string Quoted(const std::string& text) {
+// Cut to some 60 bytes, not inside a UTF-8 character: the API's strings must be UTF-8. Without control characters,
+// which a terminal would obey.
+std::string Quoted(std::string text) {
   constexpr std::size_t kShown = 60;
-  if (text.size() <= kShown) return '"' + text + '"';
-  std::size_t end = kShown;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) --end;
-  return '"' + text.substr(0, end) + "...\"";
+  std::size_t end = std::min(text.size(), kShown);
+  while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) --end;
+  const bool whole = end == text.size();
+  text.resize(end);
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return '"' + text + (whole ? "\"" : "...\"");
 }
 
 std::string Item(const std::string& list, std::size_t index) { return list + "[" + std::to_string(index) + "]"; }

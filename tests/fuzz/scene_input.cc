@@ -26,6 +26,9 @@ std::string CheckDiagnostics(const Diagnostics& diagnostics) {
   for (const Diagnostic& mistake : diagnostics.kept()) {
     if (mistake.path.empty() || mistake.message.empty()) return "a mistake without path or message";
     if (mistake.path.size() > 500 || mistake.message.size() > 1000) return "an endless message: " + mistake.path;
+    for (const char c : mistake.path + mistake.message) {
+      if (static_cast<unsigned char>(c) < ' ') return "a control character in: " + mistake.path;
+    }
     v1::Diagnostic& diagnostic = *response.add_diagnostics();
     diagnostic.set_path(mistake.path);
     diagnostic.set_message(mistake.message);

@@ -236,5 +236,18 @@ TEST(SceneConvertTest, MessagesStayUtf8) {
   }
 }
 
+// A terminal would obey them.
+TEST(SceneConvertTest, MessagesShowNoControlCharacters) {
+  v1::Scene proto;
+  Diagnostics diagnostics;
+  SceneFromJson(R"({"plane":{"curves":[{"material":"\u001b[31mred\u0007","\u001bodd":1}]},
+      "probes":[{"side":"\u001b[2J"},{"curve":"\u0000"}]})",
+                proto, diagnostics);
+  EXPECT_GE(diagnostics.count(), 4U);
+  for (const Diagnostic& mistake : diagnostics.kept()) {
+    for (const char c : mistake.path + mistake.message) EXPECT_GE(c, ' ') << mistake.path;
+  }
+}
+
 }  // namespace
 }  // namespace flatlight
