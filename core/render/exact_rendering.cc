@@ -44,7 +44,7 @@ struct WorldUnits {
 
 ExactRendering::ExactRendering(std::shared_ptr<const Scene> scene, const Plan& plan)
     : scene_(std::move(scene)),
-      bvh_(scene_->elements()),
+      bvh_(*scene_),
       options_(OptionsOf(plan)),
       derivatives_(OrderOf(plan)),
       dark_(plan.Takes(skip::kEmission)),

@@ -57,8 +57,10 @@ bool PointBlocks::Advance(Executor& executor, int max_threads, const Cancellatio
   Cursor cursor{first_open_, 0};
   Clock::Time now = clock.Now();
   while (!cancellation.cancelled()) {
-    // As many shards as fit into the time left.
-    const double rounds = std::clamp(Seconds(until - now).count() / kShardSeconds, 1.0, kShardsPerThread);
+    // As many shards as fit into the time left; one a thread while it isn't known how long they take.
+    const double shard_seconds = std::max(std::floor(blocks_per_shard_) * seconds_per_block_, kShardSeconds);
+    const double fitting = Seconds(until - now).count() / shard_seconds;
+    const double rounds = std::clamp(fitting, 1.0, seconds_per_block_ > 0 ? kShardsPerThread : 1.0);
     const auto wanted = static_cast<std::size_t>(std::floor(rounds) * threads);
     std::vector<Shard> shards;
     double cut = 0;
@@ -73,9 +75,9 @@ bool PointBlocks::Advance(Executor& executor, int max_threads, const Cancellatio
     if (!Merge(shards)) return false;
     const Clock::Time after = clock.Now();
     const double used_threads = std::min(static_cast<double>(threads), static_cast<double>(shards.size()));
-    const double seconds_per_block = Seconds(after - now).count() * used_threads / cut;
+    seconds_per_block_ = Seconds(after - now).count() * used_threads / cut;
     // Grow by steps: a first measurement of tiny shards is mostly overhead.
-    const double best = seconds_per_block > 0 ? kShardSeconds / seconds_per_block : kMostBlocksPerShard;
+    const double best = seconds_per_block_ > 0 ? kShardSeconds / seconds_per_block_ : kMostBlocksPerShard;
     blocks_per_shard_ = std::clamp(std::min(best, 4 * blocks_per_shard_), 1.0, kMostBlocksPerShard);
     now = after;
     if (now >= until) {

@@ -78,6 +78,7 @@ class PointBlocks {
   double rays_ = 0;
   // How to cut work: measured, without influence on sums.
   double blocks_per_shard_ = 1;
+  double seconds_per_block_ = 0;  // On one thread; 0: unknown.
 };
 
 }  // namespace flatlight

@@ -5,18 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "core/math/trig.h"
 #include "core/scene/element_frame.h"
 
 namespace flatlight {
 namespace {
 
 constexpr std::uint32_t kNotAPiece = 0xffffffff;
-
-Point2 ArcPoint(const Element& arc, double fraction) {
-  const SinCosValue turn = SinCos(arc.start_angle + fraction * arc.sweep_angle);
-  return arc.center + arc.radius * Vector2{turn.cos, turn.sin};
-}
 
 }  // namespace
 
@@ -142,7 +136,7 @@ std::optional<EmitterSample> EmitterSampler::View::Sample(double u) const {
 std::optional<EmitterSample> EmitterSampler::View::SampleLength(std::size_t index, double probability, double u) const {
   const Piece& piece = sampler_.pieces_[index];
   EmitterSample sample;
-  sample.point = {ArcPoint(piece.element, u), piece.id};
+  sample.point = {FrameAt(piece.element, u).position, piece.id};
   const Vector2 toward = sample.point.position - vertex_.at.position;
   const double distance = Length(toward);
   sample.cosine = Dot(vertex_.normal, toward) / distance;
