@@ -36,6 +36,17 @@ TEST(SceneReaderLimitsTest, AllowsTheStatedDepthAndNoMore) {
   }
 }
 
+TEST(SceneReaderLimitsTest, EveryDeepValueIsReported) {
+  v1::Scene scene;
+  Diagnostics diagnostics;
+  const std::string deep = Nested("[", "", "]", kMaxSceneDepth);
+  EXPECT_FALSE(ReadSceneJson("{\"odd\":" + deep + ",\"even\":" + deep + "}", scene, diagnostics));
+  ASSERT_EQ(diagnostics.count(), 4U);
+  EXPECT_EQ(diagnostics.kept()[1].path, "odd");
+  EXPECT_EQ(diagnostics.kept()[3].path, "even");
+  EXPECT_THAT(diagnostics.kept()[3].message, HasSubstr("at most 32 levels"));
+}
+
 TEST(SceneReaderLimitsTest, DeepNestingIsReportedOnceAndCostsNothing) {
   constexpr int kDepth = 2'000'000;
   for (const std::string& json :
