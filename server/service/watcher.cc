@@ -44,7 +44,8 @@ Watcher::Decision Watcher::Decide(Time now) {
     if (ended || now >= next_update_) {
       update_ = hub_.UpdateFor(*job, known_);
       next_message_ = 0;
-      next_update_ = now + interval_;
+      // The wait counts from the first picture on: it should come as soon as there is one.
+      if (job->state->field != nullptr) next_update_ = now + interval_;
       return DecideWrite(Write::kUpdate, update_->Message(0), now);
     }
   } else if (ended) {

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/scheduler/scheduler.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <new>
+#include <stdexcept>
+
+#include "core/execution/thread_pool.h"
+#include "server/scheduler/metered_executor.h"
+#include "server/store/error.h"
+#include "server/store/memory_job_store.h"
+#include "tests/support/rendering/fake_clock.h"
+#include "tests/support/rendering/fake_rendering.h"
+#include "tests/support/rendering/test_scene.h"
+#include "tests/support/status/status_matchers.h"
+
+namespace flatlight {
+namespace {
+
+using ::testing::_;
+using ::testing::ElementsAre;
+using testing::FakeClock;
+using testing::FakeRenderings;
+using ::testing::HasSubstr;
+using testing::IsOk;
+using testing::StatusIs;
+
+constexpr int kSteps = 4;
+
+class SchedulerTest : public ::testing::Test {
+ protected:
+  ~SchedulerTest() override { renderings_.Release(); }
+
+  void MakeScheduler(SchedulerOptions options = {}) {
+    scheduler_ = std::make_unique<Scheduler>(
+        options, store_, pool_, clock_,
+        [this](std::shared_ptr<const Scene> scene, const Plan& plan) { return renderings_.Start(scene, plan); },
+        [this](const JobId&) {
+          const std::lock_guard lock(mutex_);
+          changed_.notify_all();
+        });
+  }
+
+  static std::shared_ptr<const JobSpec> Spec(const std::string& name, const std::vector<std::uint32_t>& counts = {8}) {
+    SceneDescription description = testing::FloorAndLampDescription(counts);
+    description.name = name;
+    Diagnostics diagnostics;
+    auto spec = std::make_shared<JobSpec>();
+    spec->id = JobId::Random();
+    spec->scene = BuildScene(description, diagnostics);
+    return spec;
+  }
+
+  JobId Submit(const std::string& name) {
+    const auto job = scheduler_->Submit(Spec(name), std::nullopt);
+    EXPECT_THAT(job, IsOk());
+    return job->spec->id;
+  }
+
+  JobState Await(const JobId& id, const std::function<bool(const JobState&)>& condition) {
+    std::unique_lock lock(mutex_);
+    JobState state;
+    changed_.wait(lock, [&] {
+      const auto job = store_.Get(id);
+      EXPECT_THAT(job, IsOk());
+      if (job.ok()) state = *job->state;
+      return !job.ok() || condition(state);
+    });
+    return state;
+  }
+  JobState AwaitPhase(const JobId& id, JobPhase phase) {
+    return Await(id, [=](const JobState& state) { return state.phase == phase; });
+  }
+  JobState AwaitEnd(const JobId& id) {
+    return Await(id, [](const JobState& state) { return HasEnded(state.phase); });
+  }
+
+  // Until all jobs so far are ready for a slice: they are prepared one after the other.
+  void AwaitPreparation() { AwaitPhase(Submit("last"), JobPhase::kRunning); }
+
+  FakeClock clock_;
+  ThreadPool pool_{2};
+  MemoryJobStore store_{{}, clock_};
+  FakeRenderings renderings_{kSteps};
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::unique_ptr<Scheduler> scheduler_;
+};
+
+TEST_F(SchedulerTest, RunsAJobToItsEnd) {
+  MakeScheduler();
+  const JobState state = AwaitEnd(Submit("a"));
+  EXPECT_EQ(state.phase, JobPhase::kSucceeded);
+  EXPECT_EQ(state.end_reason, EndReason::kSamplesDone);
+  EXPECT_TRUE(state.start_time && state.end_time);
+  ASSERT_NE(state.field, nullptr);
+  EXPECT_EQ(state.field->probes[0].irradiance, std::vector<double>(8, kSteps));
+}
+
+TEST_F(SchedulerTest, JobsTakeTurns) {
+  MakeScheduler();
+  renderings_.Hold();
+  const JobId a = Submit("a");
+  AwaitPhase(a, JobPhase::kRunning);
+  const JobId b = Submit("b");
+  AwaitPreparation();
+  renderings_.Release();
+  AwaitEnd(a);
+  AwaitEnd(b);
+  std::vector<std::string> slices = renderings_.slices();
+  std::erase(slices, "last");
+  EXPECT_THAT(slices, ElementsAre("a", "b", "a", "b", "a", "b", "a", "b"));
+}
+
+TEST_F(SchedulerTest, ANewcomerGoesBeforeThoseThatHaveSomethingToShow) {
+  MakeScheduler();
+  renderings_.Hold();
+  const JobId a = Submit("a");
+  AwaitPhase(a, JobPhase::kRunning);
+  const JobId b = Submit("b");
+  AwaitPhase(b, JobPhase::kRunning);
+  renderings_.Allow(2);
+  Await(b, [](const JobState& state) { return state.field != nullptr; });
+  Submit("c");  // While a's second slice waits for its step.
+  AwaitPreparation();
+  renderings_.Release();
+  AwaitEnd(b);
+  EXPECT_THAT(renderings_.slices().at(3), "c");
+}
+
+TEST_F(SchedulerTest, PublishesTheFirstPictureAtOnceAndLaterOnesNowAndThen) {
+  MakeScheduler();
+  // The clock stands still, so only the first and the last picture are due: QUEUED 1, RUNNING 2, 3, 4.
+  EXPECT_EQ(AwaitEnd(Submit("a")).sequence, 4u);
+}
+
+TEST_F(SchedulerTest, PublishesWhenTheIntervalHasPassed) {
+  SchedulerOptions options;
+  renderings_.set_on_step([&](auto&&...) { clock_.Advance(options.publish_interval); });
+  MakeScheduler(options);
+  EXPECT_EQ(AwaitEnd(Submit("a")).sequence, 2u + kSteps);
+}
+
+TEST_F(SchedulerTest, SaysWhichPointsChanged) {
+  SchedulerOptions options;
+  renderings_.set_on_step([&](auto&&...) { clock_.Advance(options.publish_interval); });
+  MakeScheduler(options);
+  const auto job = scheduler_->Submit(Spec("a", {FieldVersions::kPoints + 1, 3}), std::nullopt);
+  ASSERT_THAT(job, IsOk());
+  const JobState state = AwaitEnd(job->spec->id);
+  // The first probe changed with every step, the second only with the first.
+  EXPECT_THAT(state.versions.changed, ElementsAre(ElementsAre(state.sequence, state.sequence), ElementsAre(3)));
+}
+
+TEST_F(SchedulerTest, CancelStopsASliceAndKeepsWhatIsThere) {
+  MakeScheduler();
+  renderings_.Hold();
+  const JobId a = Submit("a");
+  renderings_.Allow(1);
+  Await(a, [](const JobState& state) { return state.field != nullptr; });
+  const auto cancelled = scheduler_->Cancel(a);
+  ASSERT_THAT(cancelled, IsOk());
+  EXPECT_EQ(cancelled->state->phase, JobPhase::kCancelled);
+  EXPECT_FALSE(cancelled->state->end_reason);
+  EXPECT_EQ(cancelled->state->field->probes[0].irradiance[0], 1);
+  EXPECT_THAT(renderings_.slices(), ElementsAre("a"));
+}
+
+TEST_F(SchedulerTest, AnEndedJobCannotBeCancelled) {
+  MakeScheduler();
+  const JobId a = Submit("a");
+  const std::uint64_t sequence = AwaitEnd(a).sequence;
+  const auto cancelled = scheduler_->Cancel(a);
+  ASSERT_THAT(cancelled, IsOk());
+  EXPECT_EQ(cancelled->state->phase, JobPhase::kSucceeded);
+  EXPECT_EQ(cancelled->state->sequence, sequence);
+}
+
+TEST_F(SchedulerTest, JobsBeyondTheLimitWaitAndCanBeCancelledThere) {
+  SchedulerOptions options;
+  options.max_running_jobs = 1;
+  MakeScheduler(options);
+  renderings_.Hold();
+  const JobId a = Submit("a");
+  const JobId b = Submit("b");
+  const JobId c = Submit("c");
+  AwaitPhase(a, JobPhase::kRunning);
+  EXPECT_EQ(store_.Get(b)->state->phase, JobPhase::kQueued);
+  EXPECT_EQ(scheduler_->Cancel(b)->state->phase, JobPhase::kCancelled);
+  renderings_.Release();
+  EXPECT_EQ(AwaitEnd(c).phase, JobPhase::kSucceeded);
+  EXPECT_THAT(renderings_.slices(), ElementsAre("a", "a", "a", "a", "c", "c", "c", "c"));
+}
+
+TEST_F(SchedulerTest, AFailureOnAPoolThreadEndsItsJobOnly) {
+  renderings_.set_on_step([](const std::string& scene, int, Executor& executor, const Cancellation&) {
+    executor.ParallelFor(8, 2, [&](std::size_t i) {
+      if (scene == "bad" && i == 7) throw std::runtime_error("the roof leaks");
+      if (scene == "big" && i == 7) throw std::bad_alloc();
+    });
+  });
+  MakeScheduler();
+  const JobId bad = Submit("bad");
+  const JobId big = Submit("big");
+  const JobId good = Submit("good");
+  const JobState state = AwaitEnd(bad);
+  EXPECT_EQ(state.phase, JobPhase::kFailed);
+  EXPECT_THAT(state.error, StatusIs(absl::StatusCode::kInternal, HasSubstr("the roof leaks")));
+  EXPECT_THAT(AwaitEnd(big).error, StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("memory")));
+  EXPECT_EQ(AwaitEnd(good).phase, JobPhase::kSucceeded);
+}
+
+TEST_F(SchedulerTest, DeletingARunningJobStopsIt) {
+  MakeScheduler();
+  renderings_.Hold();
+  const JobId a = Submit("a");
+  AwaitPhase(a, JobPhase::kRunning);
+  EXPECT_THAT(scheduler_->Delete(a), IsOk());
+  EXPECT_THAT(store_.Get(a), StatusIs(absl::StatusCode::kNotFound, _));
+  const JobId b = Submit("b");
+  renderings_.Allow(kSteps);
+  EXPECT_EQ(AwaitEnd(b).phase, JobPhase::kSucceeded);
+  EXPECT_THAT(renderings_.slices(), ElementsAre("b", "b", "b", "b"));
+}
+
+TEST_F(SchedulerTest, TheSameRequestMakesOneJob) {
+  MakeScheduler();
+  const RequestKey key{"me", "CreateJob", "id", "fingerprint"};
+  const auto first = scheduler_->Submit(Spec("a"), key);
+  const auto second = scheduler_->Submit(Spec("a"), key);
+  ASSERT_THAT(first, IsOk());
+  ASSERT_THAT(second, IsOk());
+  EXPECT_EQ(first->spec->id, second->spec->id);
+  AwaitEnd(first->spec->id);
+  EXPECT_EQ(renderings_.slices().size(), kSteps);
+}
+
+TEST_F(SchedulerTest, StopCancelsAllAndRefusesMore) {
+  SchedulerOptions options;
+  options.max_running_jobs = 1;
+  MakeScheduler(options);
+  renderings_.Hold();
+  const JobId a = Submit("a");
+  const JobId b = Submit("b");
+  AwaitPhase(a, JobPhase::kRunning);
+  scheduler_->Stop();
+  EXPECT_EQ(store_.Get(a)->state->phase, JobPhase::kCancelled);
+  EXPECT_EQ(store_.Get(b)->state->phase, JobPhase::kCancelled);
+  EXPECT_THAT(scheduler_->Submit(Spec("c"), std::nullopt), StatusIs(absl::StatusCode::kUnavailable, _));
+}
+
+TEST_F(SchedulerTest, CountsTheProcessorTimeOfAllThreads) {
+  std::atomic<std::int64_t> spent = 0;
+  renderings_.set_on_step([&](const std::string&, int, Executor& executor, const Cancellation&) {
+    executor.ParallelFor(8, 2, [&](std::size_t) {
+      const std::int64_t start = ThreadCpuNanoseconds();
+      while (ThreadCpuNanoseconds() - start < 1'000'000) {
+      }
+      spent += ThreadCpuNanoseconds() - start;
+    });
+  });
+  MakeScheduler();
+  const double cpu_seconds = AwaitEnd(Submit("a")).cpu_seconds;
+  EXPECT_GE(cpu_seconds, 1e-9 * static_cast<double>(spent));
+  // Nothing else takes a tenth of it.
+  EXPECT_LT(cpu_seconds, 1.1e-9 * static_cast<double>(spent) + 0.005);
+}
+
+}  // namespace
+}  // namespace flatlight

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/memory_scene_store.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/store/error.h"
+#include "tests/support/rendering/fake_clock.h"
+#include "tests/support/status/status_matchers.h"
+
+namespace flatlight {
+namespace {
+
+using ::testing::_;
+using ::testing::HasSubstr;
+using testing::IsOk;
+using testing::StatusIs;
+using enum absl::StatusCode;
+
+class MemorySceneStoreTest : public ::testing::Test {
+ protected:
+  // Uploads all of `text` at once.
+  absl::StatusOr<std::uint64_t> UploadAll(const std::string& text) {
+    return store_.Upload(Sha256Of(text), text.size(), 0, text);
+  }
+
+  testing::FakeClock clock_;
+  MemorySceneStore store_{{.max_scene_bytes = 100, .max_total_bytes = 150, .max_scenes = 3, .max_uploads = 2}, clock_};
+  const std::string text_ = "{\"name\": \"a scene\"}";
+  const std::string hash_ = Sha256Of(text_);
+};
+
+TEST(Sha256, AgreesWithThePublishedExample) {
+  // FIPS 180-2, appendix B.1.
+  EXPECT_EQ(Sha256Of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST_F(MemorySceneStoreTest, TakesAFileInPieces) {
+  EXPECT_EQ(*store_.Upload(hash_, text_.size(), 0, ""), 0u);
+  EXPECT_EQ(*store_.Upload(hash_, text_.size(), 0, text_.substr(0, 5)), 5u);
+  EXPECT_EQ(*store_.Upload(hash_, text_.size(), 0, ""), 5u) << "a call without data asks";
+  EXPECT_THAT(store_.Get(hash_), StatusIs(kNotFound, _)) << "not complete";
+  EXPECT_EQ(*store_.Upload(hash_, text_.size(), 5, text_.substr(5)), text_.size());
+  EXPECT_EQ(*store_.Get(hash_)->bytes, text_);
+  EXPECT_EQ(*store_.Upload(hash_, text_.size(), 0, text_), text_.size()) << "all is there already";
+}
+
+TEST_F(MemorySceneStoreTest, ThePlaceOfAPieceMustBeRight) {
+  ASSERT_THAT(store_.Upload(hash_, text_.size(), 0, text_.substr(0, 5)), IsOk());
+  EXPECT_THAT(store_.Upload(hash_, text_.size(), 0, text_.substr(0, 5)),
+              StatusIs(kOutOfRange, HasSubstr("5 bytes are there")));
+  EXPECT_THAT(store_.Upload(hash_, text_.size(), 5, text_), StatusIs(kInvalidArgument, HasSubstr("missing")));
+  EXPECT_THAT(store_.Upload(hash_, text_.size() + 1, 5, "x"), StatusIs(kInvalidArgument, HasSubstr("total_bytes")));
+}
+
+TEST_F(MemorySceneStoreTest, OtherBytesThanTheHashSaysAreThrownAway) {
+  const std::string other(text_.size(), 'x');
+  EXPECT_THAT(store_.Upload(hash_, text_.size(), 0, other), StatusIs(kInvalidArgument, HasSubstr(Sha256Of(other))));
+  EXPECT_THAT(store_.Get(hash_), StatusIs(kNotFound, _));
+  EXPECT_THAT(UploadAll(text_), IsOk()) << "and the right ones are taken";
+}
+
+TEST_F(MemorySceneStoreTest, RefusesBadHashesAndSizes) {
+  EXPECT_THAT(store_.Upload("abc", 3, 0, "abc"), StatusIs(kInvalidArgument, HasSubstr("sha256")));
+  EXPECT_THAT(store_.Upload(hash_, 0, 0, ""), StatusIs(kInvalidArgument, HasSubstr("total_bytes is 0")));
+  EXPECT_THAT(store_.Upload(hash_, 101, 0, "x"), StatusIs(kInvalidArgument, HasSubstr("100")));
+}
+
+TEST_F(MemorySceneStoreTest, AllScenesTogetherAreLimited) {
+  ASSERT_THAT(UploadAll(std::string(90, 'a')), IsOk());
+  const auto refused = UploadAll(std::string(61, 'b'));
+  EXPECT_THAT(refused, StatusIs(kResourceExhausted, HasSubstr("150")));
+  EXPECT_TRUE(QuotaViolationOf(refused.status()));
+  ASSERT_THAT(store_.Delete(Sha256Of(std::string(90, 'a'))), IsOk());
+  EXPECT_THAT(UploadAll(std::string(61, 'b')), IsOk());
+}
+
+TEST_F(MemorySceneStoreTest, AnIdleUploadGivesWay) {
+  ASSERT_THAT(store_.Upload(Sha256Of("first"), 5, 0, "fi"), IsOk());
+  ASSERT_THAT(store_.Upload(Sha256Of("second"), 6, 0, "se"), IsOk());
+  EXPECT_THAT(store_.Upload(Sha256Of("third"), 5, 0, "th"), StatusIs(kResourceExhausted, HasSubstr("2 uploads")));
+  clock_.Advance(std::chrono::seconds(30));
+  ASSERT_THAT(store_.Upload(Sha256Of("second"), 6, 2, "co"), IsOk());
+  clock_.Advance(std::chrono::seconds(31));
+  EXPECT_THAT(store_.Upload(Sha256Of("third"), 5, 0, "th"), IsOk());
+  EXPECT_EQ(*store_.Upload(Sha256Of("first"), 5, 0, ""), 0u);
+  EXPECT_EQ(*store_.Upload(Sha256Of("second"), 6, 0, ""), 4u);
+}
+
+TEST_F(MemorySceneStoreTest, ListsNewestFirst) {
+  for (const char* text : {"a", "b", "c"}) ASSERT_THAT(UploadAll(text), IsOk());
+  store_.SetTitle(Sha256Of("c"), "the third");
+  const ScenePage first = store_.List(std::nullopt, 2);
+  ASSERT_EQ(first.scenes.size(), 2u);
+  EXPECT_EQ(first.scenes[0].title, "the third");
+  const ScenePage second = store_.List(first.next_before, 2);
+  ASSERT_EQ(second.scenes.size(), 1u);
+  EXPECT_EQ(*second.scenes[0].bytes, "a");
+  EXPECT_FALSE(second.next_before);
+  EXPECT_THAT(UploadAll("d"), StatusIs(kResourceExhausted, HasSubstr("3 scenes")));
+}
+
+}  // namespace
+}  // namespace flatlight
