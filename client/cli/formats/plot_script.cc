@@ -171,7 +171,9 @@ std::string PlotScript(const v1::RenderResult& result, PlotForm form) {
     const int bottom = top + (i == 0 ? kFirstPanel : kOtherPanel);
     const bool last = i + 1 == panels.size();
     script += "set tmargin at screen " + screen(top) + "\nset bmargin at screen " + screen(bottom) + "\n";
-    script += "set ylabel '" + panels[i].quantity.label + "' offset screen -0.002,0\n" + RangeCommand(panels[i]);
+    // Not a ylabel: its place would depend on the width of the numbers, and differ from panel to panel.
+    script += "set label 3 '" + panels[i].quantity.label + "' at screen 0.036, screen " + screen((top + bottom) / 2) +
+              " center rotate by 90\n" + RangeCommand(panels[i]);
     if (last) {
       script += HasArcLengths(result) ? "set xlabel 'arc length  {/:Italic s}  [m]'\nset format x '%g'\n"
                                       : "set xlabel 'point'\nset format x '%g'\n";

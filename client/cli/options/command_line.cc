@@ -166,6 +166,9 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv, 
     }
     const auto chosen = app.get_subcommands();
     const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+    if (chosen.empty() && argc > 1 && argv[1][0] != '-')
+      return UsageError("'" + std::string(argv[1]) + "' is not a command; see flatlight --help");
+    if (chosen.empty() && argc < 2) return UsageError("a command is needed; see flatlight --help");
     return UsageError(std::string(error.what()) + "; see flatlight" + command + " --help");
   }
   return Finish(app, raw);

@@ -5,8 +5,7 @@
 
 namespace flatlight {
 
-inline constexpr char kMainHelp[] = R"(
-Examples:
+inline constexpr char kMainHelp[] = R"(Examples:
   flatlight scenes                                          what there is to start with
   flatlight render gallery:penumbra -o out.json -o out.svg  render, write the result and a plot
   flatlight explain scene.json --method path-tracing        what would be done, and why
@@ -22,8 +21,7 @@ Exit status:
   0 done   1 the job failed   2 bad usage or bad scene   3 server not reached   4 denied or over quota
   5 an output could not be written   10 compare found a difference   130 interrupted)";
 
-inline constexpr char kRenderHelp[] = R"(
-The ending of OUT picks its form:
+inline constexpr char kRenderHelp[] = R"(The ending of OUT picks its form:
   .json        the whole result (RenderResult of the API); - writes it to standard output
   .csv         a row a point: probe, index, x, y, nx, ny, arcLength, irradiance, standardError, gradient, gradientError,
                hessian, hessianError, samples; only what there is. In colour irradianceR, irradianceG, irradianceB, ...
@@ -39,34 +37,27 @@ Examples:
   flatlight render gallery:unit-light --method exact --derivatives hessian -o - | jq .probes[0].irradiance
   flatlight render - --target-error 0.01 --time-limit 60 -o result.csv < scene.json)";
 
-inline constexpr char kSubmitHelp[] = R"(
-Prints the name of the job, and returns at once.
+inline constexpr char kSubmitHelp[] = R"(Prints the name of the job, and returns at once.
 
 Example:
   job=$(flatlight submit scene.json --samples 100000 --quiet)
   flatlight watch $job && flatlight fetch $job -o result.json)";
 
-inline constexpr char kWatchHelp[] = R"(
-Waits until the job has ended, and takes up a broken connection again by itself. Ctrl-C stops watching; the job goes on.
+inline constexpr char kWatchHelp[] = R"(Waits until the job has ended, and takes up a broken connection again by itself. Ctrl-C stops watching; the job goes on.
 JOB is jobs/UUID, a UUID, or the beginning of one.)";
 
-inline constexpr char kJobHelp[] = R"(
-JOB is jobs/UUID, a UUID, or the beginning of one.)";
+inline constexpr char kJobHelp[] = R"(JOB is jobs/UUID, a UUID, or the beginning of one.)";
 
-inline constexpr char kFetchHelp[] = R"(
-JOB is jobs/UUID, a UUID, or the beginning of one. It must have ended; of a cancelled one there is what was done.
+inline constexpr char kFetchHelp[] = R"(JOB is jobs/UUID, a UUID, or the beginning of one. It must have ended; of a cancelled one there is what was done.
 See `flatlight render --help` for the forms of OUT.)";
 
-inline constexpr char kScenesHelp[] = R"(
-Examples:
+inline constexpr char kScenesHelp[] = R"(Examples:
   flatlight scenes
   flatlight scenes penumbra > mine.json    a copy to change)";
 
-inline constexpr char kExplainHelp[] = R"(
-Renders nothing. Names in the list of skips are for --no-skip.)";
+inline constexpr char kExplainHelp[] = R"(Renders nothing. Names in the list of skips are for --no-skip.)";
 
-inline constexpr char kCompareHelp[] = R"(
-A and B are results in JSON form with the same probes at the same points; B is the reference. Printed for irradiance and, if
+inline constexpr char kCompareHelp[] = R"(A and B are results in JSON form with the same probes at the same points; B is the reference. Printed for irradiance and, if
 both have them, derivatives of each probe:
   rms, max    of the difference A - B          relative rms    rms over the rms of B
   z           difference / its standard error: mean z (0 without bias), mean z^2 (1 if the errors are honest)

@@ -69,7 +69,7 @@ absl::StatusOr<std::string> Bytes(const v1::RenderResult& result, OutputForm for
 absl::Status WritePictureFile(const v1::RenderResult& result, const Output& output) {
   std::vector<Picture> pictures = PicturesOf(result);
   if (pictures.empty()) return OutputError(output.path, "the result has no points");
-  if (output.form == OutputForm::kHdr) pictures = {Stacked(pictures)};
+  if (output.form == OutputForm::kHdr) pictures = {StackedColour(pictures)};
   auto file = AtomicFile::Create(output.path);
   if (!file.ok()) return file.status();
   const absl::Status written = WritePictures((*file)->temporary_path(), pictures);

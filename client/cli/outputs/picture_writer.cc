@@ -32,13 +32,11 @@ std::vector<Picture> PicturesOf(const v1::RenderResult& result) {
   return pictures;
 }
 
-Picture Stacked(const std::vector<Picture>& pictures) {
+Picture StackedColour(const std::vector<Picture>& pictures) {
   Picture stacked;
+  stacked.channels = 3;
   stacked.height = static_cast<int>(pictures.size());
-  for (const Picture& picture : pictures) {
-    stacked.width = std::max(stacked.width, picture.width);
-    stacked.channels = std::max(stacked.channels, picture.channels);
-  }
+  for (const Picture& picture : pictures) stacked.width = std::max(stacked.width, picture.width);
   for (const Picture& picture : pictures)
     for (int x = 0; x < stacked.width; ++x)
       for (int channel = 0; channel < stacked.channels; ++channel) {

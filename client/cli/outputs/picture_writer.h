@@ -22,13 +22,13 @@ struct Picture {
 // A picture of one row for each probe that has points.
 std::vector<Picture> PicturesOf(const v1::RenderResult& result);
 
-// One above the other, for formats that hold one picture: shorter rows are filled up with zeros.
-Picture Stacked(const std::vector<Picture>& pictures);
+// One above the other with 3 channels, as .hdr wants it: shorter rows are filled up with zeros.
+Picture StackedColour(const std::vector<Picture>& pictures);
 
 // OK if the module that writes pictures lies beside the program.
 absl::Status FindPictureModule();
 
-// `path` ends in .exr (a part for each picture) or .hdr (one picture). Fails with the reason alone.
+// `path` ends in .exr (a part for each picture) or .hdr (one picture of 3 channels). Fails with the reason alone.
 absl::Status WritePictures(const std::string& path, const std::vector<Picture>& pictures);
 
 }  // namespace flatlight

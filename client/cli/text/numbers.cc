@@ -46,7 +46,7 @@ std::string FormatPercent(double fraction) {
 
 std::string FormatSeconds(double seconds) {
   if (seconds <= 0) return "0 s";
-  if (seconds < 0.001) return Plain(seconds * 1e6, 2) + " us";
+  if (seconds < 0.0009995) return Plain(seconds * 1e6, 2) + " us";
   if (seconds < 0.9995) return Plain(seconds * 1e3, 2) + " ms";
   if (seconds < 9.95) return Plain(seconds, 2) + " s";
   if (seconds < 59.5) return Print("%.*f s", 0, seconds);
