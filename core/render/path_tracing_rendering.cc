@@ -60,7 +60,8 @@ std::unique_ptr<const PointSampler> MakeSampler(std::shared_ptr<const Scene> sce
   options.max_bounces = plan.settings.max_bounces;
   if (plan.Takes(skip::kBounces)) options.max_bounces = 0;
   options.one_channel = plan.Takes(skip::kColour);
-  options.assume_visible = plan.Takes(skip::kVisibility);
+  options.leave_out_shadow_rays = plan.Takes(skip::kVisibility);
+  options.nothing_blocks = plan.Takes(skip::kVisibility) || plan.Disables(skip::kVisibility);
   options.end_black_paths = plan.Takes(skip::kBlackPaths);
   options.drop_unseen_emitters = plan.Takes(skip::kUnseenEmitters);
   return std::make_unique<PathSampler>(std::move(scene), options, plan.settings.seed.value_or(0));

@@ -42,7 +42,7 @@ PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracin
 }
 
 Spectrum PathTracer::DirectStep(const Receiver& receiver) const {
-  return options_.assume_visible ? Spectrum{} : emitters_.Unblocked(VertexAt(scene_, receiver));
+  return options_.nothing_blocks ? Spectrum{} : emitters_.Unblocked(VertexAt(scene_, receiver));
 }
 
 void PathTracer::AddPath(const Receiver& receiver, const SampleStream& stream, std::uint32_t index,
@@ -72,8 +72,8 @@ void PathTracer::AddPathOf(const Receiver& receiver, const SampleStream& stream,
     const EmitterSampler::View view(emitters_, vertex);
     if (!view.empty()) {
       if (const std::optional<EmitterSample> sample = view.Sample(random.u)) {
-        if (!options_.assume_visible) ++rays;
-        if (options_.assume_visible || caster_->Visible(vertex.at, sample->point)) {
+        if (!options_.leave_out_shadow_rays) ++rays;
+        if (options_.leave_out_shadow_rays || caster_->Visible(vertex.at, sample->point)) {
           const double share = view.sufficient() ? 1 : PowerHeuristic(sample->density, sample->cosine / 2);
           add(share * (sample->cosine / sample->density), sample->radiance);
         }

@@ -17,13 +17,14 @@
 
 namespace flatlight {
 
-// The members after the first switch off work that a scene may not need. They change no result where they are allowed.
 struct PathTracingOptions {
   std::optional<std::uint32_t> max_bounces;  // Reflections between emitter and receiver. Absent: all.
-  bool one_channel = false;                  // Allowed if all spectra are grey.
-  bool assume_visible = false;               // Allowed if nothing can block (NothingBlocks).
-  bool end_black_paths = false;              // Ends a path where it meets a black surface.
-  bool drop_unseen_emitters = false;         // Allowed if only direct light is wanted.
+  bool nothing_blocks = false;               // It is certain that no curve stands between emitters and points.
+  // Work that a scene may not need. Where they are allowed these change no result.
+  bool one_channel = false;            // Allowed if all spectra are grey.
+  bool leave_out_shadow_rays = false;  // Allowed if nothing blocks.
+  bool end_black_paths = false;        // Ends a path where it meets a black surface.
+  bool drop_unseen_emitters = false;   // Allowed if only direct light is wanted.
 };
 
 // Irradiance by paths from the receiver. At each vertex the emitters are sampled, and the path goes on in a direction

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/render/skips.h"
+#include "tests/support/transport/scene_maker.h"
+
+namespace flatlight {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::shared_ptr<const Scene> Black() { return UnitLight().Probe("floor", 5).Build(); }
+std::shared_ptr<const Scene> Reflecting() { return FurnishedRoom(true, 5).Build(); }
+
+// "path: message" of every mistake.
+std::vector<std::string> Mistakes(const Scene& scene, const Settings& settings) {
+  Diagnostics diagnostics;
+  const bool planned = MakePlan(scene, settings, diagnostics).has_value();
+  EXPECT_EQ(planned, diagnostics.empty());
+  std::vector<std::string> mistakes;
+  for (const Diagnostic& d : diagnostics.kept()) mistakes.push_back(d.path + ": " + d.message);
+  return mistakes;
+}
+
+Plan PlanFor(const Scene& scene, const Settings& settings = {}) {
+  Diagnostics diagnostics;
+  return MakePlan(scene, settings, diagnostics).value();
+}
+
+TEST(PlanTest, DefaultMethodFollowsTheScene) {
+  EXPECT_EQ(PlanFor(*Black()).settings.method, Method::kExact);
+  EXPECT_EQ(PlanFor(*Reflecting()).settings.method, Method::kPathTracing);
+  Settings direct;
+  direct.max_bounces = 0;
+  EXPECT_EQ(PlanFor(*Reflecting(), direct).settings.method, Method::kExact);
+  Settings bounces;
+  bounces.max_bounces = 3;
+  EXPECT_EQ(PlanFor(*Reflecting(), bounces).settings.method, Method::kPathTracing);
+  EXPECT_EQ(PlanFor(*Black(), bounces).settings.method, Method::kExact) << "nothing reflects: three bounces or none";
+}
+
+TEST(PlanTest, FillsInDefaults) {
+  const Settings exact = PlanFor(*Black()).settings;
+  EXPECT_EQ(exact.derivatives, Derivatives::kHessian);
+  EXPECT_FALSE(exact.samples.has_value());
+  const Settings paths = PlanFor(*Reflecting()).settings;
+  EXPECT_EQ(paths.samples, 1024u);
+  EXPECT_EQ(paths.seed, 0u);
+  EXPECT_EQ(paths.derivatives, Derivatives::kNone);
+  Settings target;
+  target.target_error = 0.01;
+  EXPECT_FALSE(PlanFor(*Reflecting(), target).settings.samples.has_value());
+  target.samples = 100;
+  EXPECT_EQ(PlanFor(*Reflecting(), target).settings.samples, 100u);
+  Settings limit;
+  limit.time_limit = 2;
+  EXPECT_FALSE(PlanFor(*Reflecting(), limit).settings.samples.has_value());
+}
+
+TEST(PlanTest, ReportsEveryMistakeWithItsPlace) {
+  Settings settings;
+  settings.method = Method::kPathTracing;
+  settings.samples = 0;
+  settings.threads = 0;
+  settings.target_error = 1.5;
+  settings.time_limit = -2;
+  settings.derivatives = Derivatives::kGradient;
+  settings.no_skip = {"colour", "everything"};
+  EXPECT_THAT(Mistakes(*Reflecting(), settings),
+              ElementsAre("settings.samples: is 0, must be at least 1", "settings.threads: is 0, must be at least 1",
+                          "settings.targetError: is 1.5, must be in (0, 1]",
+                          "settings.timeLimit: is -2 s, must be a number above 0",
+                          testing::AllOf(HasSubstr("settings.noSkip[1]: \"everything\""), HasSubstr("black-paths")),
+                          testing::AllOf(HasSubstr("settings.derivatives"), HasSubstr("exact"))));
+}
+
+TEST(PlanTest, RefusesNumbersThatAreNone) {
+  for (const double bad : {0.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Settings settings;
+    settings.target_error = bad;
+    settings.time_limit = bad;
+    EXPECT_EQ(Mistakes(*Reflecting(), settings).size(), 2u) << bad;
+  }
+}
+
+TEST(PlanTest, ExactRefusesWhatItWouldIgnore) {
+  Settings settings;
+  settings.method = Method::kExact;
+  settings.samples = 64;
+  settings.seed = 1;
+  settings.target_error = 0.1;
+  settings.time_limit = 1;
+  EXPECT_THAT(
+      Mistakes(*Black(), settings),
+      ElementsAre("settings.samples: does not apply to exact", "settings.seed: does not apply to exact",
+                  "settings.targetError: does not apply to exact", "settings.timeLimit: does not apply to exact"));
+  // Chosen by default, the message says how to get sampling.
+  Settings by_default;
+  by_default.samples = 64;
+  EXPECT_THAT(Mistakes(*Black(), by_default), ElementsAre(HasSubstr("ask for path-tracing")));
+}
+
+TEST(PlanTest, ExactRefusesReflections) {
+  Settings settings;
+  settings.method = Method::kExact;
+  EXPECT_THAT(
+      Mistakes(*Reflecting(), settings),
+      ElementsAre("settings.method: exact gives direct light, and this scene reflects: set max bounces to 0, or "
+                  "use path-tracing"));
+  settings.max_bounces = 2;
+  EXPECT_THAT(Mistakes(*Reflecting(), settings), ElementsAre(HasSubstr("settings.maxBounces: is 2")));
+  settings.max_bounces = 0;
+  EXPECT_THAT(Mistakes(*Reflecting(), settings), IsEmpty());
+}
+
+TEST(PlanTest, RefusesLightThatNeverFades) {
+  const auto room = SquareRoom({.reflectance = {1}, .radiance = {1}}, 1).Build();
+  Settings settings;
+  settings.method = Method::kPathTracing;
+  EXPECT_THAT(Mistakes(*room, settings), ElementsAre(HasSubstr("light never fades")));
+  settings.max_bounces = 5;
+  EXPECT_THAT(Mistakes(*room, settings), IsEmpty());
+  // An open scene lets light out.
+  SceneMaker open;
+  open.Segment("floor", {0, 0}, {1, 0}, {.reflectance = {1}}).Probe("floor", 1);
+  open.Segment("light", {1, 1}, {0, 1}, {.reflectance = {1}, .radiance = {1}});
+  EXPECT_THAT(Mistakes(*open.Build(), {}), IsEmpty());
+}
+
+TEST(PlanTest, EverySkipHasADecisionAndAReason) {
+  for (const auto& scene : {Black(), Reflecting()}) {
+    const Plan plan = PlanFor(*scene);
+    std::vector<std::string> names;
+    for (const SkipEntry& entry : plan.skips) {
+      names.push_back(entry.name);
+      EXPECT_FALSE(entry.reason.empty()) << entry.name;
+    }
+    EXPECT_EQ(names, SkipNames());
+  }
+}
+
+TEST(PlanTest, SkipsCanBeSwitchedOff) {
+  Settings settings;
+  settings.no_skip = {skip::kColour};
+  const Plan plan = PlanFor(*Reflecting(), settings);
+  EXPECT_FALSE(plan.Takes(skip::kColour));
+  EXPECT_TRUE(plan.Disables(skip::kColour));
+  // What doesn't apply isn't disabled either.
+  EXPECT_FALSE(PlanFor(*FurnishedRoom(false, 1).Build(), settings).Disables(skip::kColour));
+}
+
+TEST(PlanTest, VisibilityIsSkippedOnlyWhereNothingCanBlock) {
+  const auto takes = [](const SceneMaker& maker) { return PlanFor(*maker.Build()).Takes(skip::kVisibility); };
+  const SceneMaker facing = UnitLight().Probe("floor", 2);
+  EXPECT_TRUE(takes(facing));
+  EXPECT_TRUE(takes(SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 1)));
+  EXPECT_FALSE(takes(SceneMaker(facing).Segment("blocker", {0.2, 0.5}, {0.4, 0.5})));
+  EXPECT_FALSE(takes(SceneMaker(facing).Segment("standing", {0.5, 0}, {0.5, 0.1})));
+  EXPECT_FALSE(takes(SceneMaker(facing).PointProbe({0.5, -1}, {0, 1}))) << "the floor stands before the light";
+  EXPECT_TRUE(takes(SceneMaker(facing).PointProbe({0.5, 0.5}, {0, 1})));
+  EXPECT_FALSE(takes(SceneMaker(facing).Arc("disc", {{5, 5}, 0.1, 0, 6.283185307179586})));
+}
+
+TEST(PlanTest, ForecastsRays) {
+  Settings settings;
+  settings.samples = 100;
+  const Plan plan = PlanFor(*Reflecting(), settings);
+  ASSERT_EQ(plan.passes.size(), 1u);
+  EXPECT_EQ(plan.passes[0].points, 20);
+  EXPECT_EQ(plan.passes[0].samples, 112);
+  EXPECT_GT(plan.passes[0].expected_rays, 20 * 112 * 2);
+  EXPECT_EQ(PlanFor(*Black()).passes[0].expected_rays, 0);
+}
+
+TEST(PlanTest, SummarySaysWhatWillBeDone) {
+  EXPECT_EQ(PlanFor(*Black()).summary, "Exact direct light with gradient and Hessian at 5 points.");
+  EXPECT_EQ(PlanFor(*Reflecting()).summary, "Path tracing of all bounces at 20 points, 1024 paths each.");
+  Settings settings;
+  settings.max_bounces = 1;
+  settings.samples = 64;
+  settings.target_error = 0.01;
+  settings.time_limit = 5;
+  EXPECT_EQ(PlanFor(*Reflecting(), settings).summary,
+            "Path tracing of up to 1 bounce at 20 points, at most 64 paths each, until the error is 1 %, for 5 s.");
+}
+
+}  // namespace
+}  // namespace flatlight

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/progressive_sampling.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "core/sampling/hash.h"
+
+namespace flatlight {
+namespace {
+
+constexpr Clock::Duration kForever = Clock::Duration::max();
+
+// Stands still but for what a test or its work adds.
+class ManualClock final : public Clock {
+ public:
+  Time Now() const override { return Time(Duration(nanoseconds_.load())); }
+  void Advance(Duration duration) { nanoseconds_ += duration.count(); }
+
+ private:
+  std::atomic<Duration::rep> nanoseconds_ = 0;
+};
+
+// Uniform numbers around 1 + point; each block takes some time of a manual clock.
+class UniformSampler final : public PointSampler {
+ public:
+  explicit UniformSampler(ManualClock* clock = nullptr, Clock::Duration block_time = {})
+      : clock_(clock), block_time_(block_time) {}
+  std::size_t channels() const override { return 1; }
+  void Steps(std::size_t, std::span<double> steps) const override { steps[0] = 0; }
+  void AddBlock(std::size_t point, std::uint32_t block, const Cancellation&, std::span<double> sums,
+                double& rays) const override {
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      sums[r] += static_cast<double>(point) + 2 * ToUnitInterval(ChildKey(ChildKey(point, block), r));
+    }
+    rays += kReplicates;
+    if (clock_ != nullptr) clock_->Advance(block_time_);
+  }
+
+ private:
+  ManualClock* clock_;
+  Clock::Duration block_time_;
+};
+
+std::vector<double> Samples(const ProgressiveSampling& sampling, std::size_t points) {
+  std::vector<double> samples;
+  for (std::size_t p = 0; p < points; ++p) samples.push_back(sampling.Value(p).samples);
+  return samples;
+}
+
+TEST(ProgressiveSamplingTest, FirstEveryPointGetsOneBlock) {
+  ManualClock clock;
+  SamplingGoal goal;
+  goal.samples = 1000;
+  ProgressiveSampling sampling(std::make_unique<UniformSampler>(&clock, std::chrono::milliseconds(1)), {3, 5}, goal);
+  InlineExecutor executor;
+  const Cancellation never;
+  EXPECT_EQ(Samples(sampling, 5), std::vector<double>(5, 0));
+  EXPECT_EQ(sampling.Progress().fraction, 0);
+  for (int slice = 0; slice < 5; ++slice) sampling.Advance(executor, 1, never, clock, Clock::Duration(0));
+  EXPECT_EQ(Samples(sampling, 5), std::vector<double>(5, 16));
+  EXPECT_FALSE(sampling.done());
+  sampling.Advance(executor, 1, never, clock, kForever);
+  ASSERT_TRUE(sampling.done());
+  EXPECT_EQ(sampling.end_reason(), EndReason::kSamplesDone);
+  EXPECT_EQ(Samples(sampling, 5), std::vector<double>(5, 1008));
+  EXPECT_EQ(sampling.Progress().fraction, 1);
+  EXPECT_EQ(sampling.rays(), 5 * 1008);
+  EXPECT_NEAR(sampling.Value(4).estimates[0].mean, 5, 6 * sampling.Value(4).estimates[0].StandardError());
+}
+
+TEST(ProgressiveSamplingTest, BudgetsAreKept) {
+  ManualClock clock;
+  SamplingGoal goal;
+  goal.samples = 1 << 20;
+  ProgressiveSampling sampling(std::make_unique<UniformSampler>(&clock, std::chrono::microseconds(50)), {10}, goal);
+  InlineExecutor executor;
+  const Cancellation never;
+  for (int slice = 0; slice < 20; ++slice) {
+    const Clock::Time before = clock.Now();
+    sampling.Advance(executor, 1, never, clock, std::chrono::milliseconds(20));
+    EXPECT_LE(clock.Now() - before, std::chrono::milliseconds(23));
+    EXPECT_GE(clock.Now() - before, std::chrono::milliseconds(20));
+  }
+}
+
+TEST(ProgressiveSamplingTest, TimeLimitEndsAtEqualCountsAndInTime) {
+  for (const double limit : {0.05, 0.5, 3.0}) {
+    ManualClock clock;
+    SamplingGoal goal;
+    goal.time_limit = limit;
+    ProgressiveSampling sampling(std::make_unique<UniformSampler>(&clock, std::chrono::microseconds(100)), {40}, goal);
+    InlineExecutor executor;
+    const Cancellation never;
+    while (!sampling.done()) {
+      sampling.Advance(executor, 1, never, clock, std::chrono::milliseconds(5));
+      EXPECT_LE(sampling.Progress().fraction, 1);
+    }
+    EXPECT_EQ(sampling.end_reason(), EndReason::kTimeLimit);
+    const double seconds = std::chrono::duration<double>(clock.Now().time_since_epoch()).count();
+    EXPECT_LE(seconds, limit);
+    EXPECT_GE(seconds, limit - 0.005) << "the last block of all points takes 4 ms";
+    EXPECT_EQ(Samples(sampling, 40), std::vector<double>(40, sampling.Value(0).samples));
+  }
+}
+
+TEST(ProgressiveSamplingTest, TimeLimitLeavesEveryPointABlock) {
+  ManualClock clock;
+  SamplingGoal goal;
+  goal.time_limit = 1e-3;
+  ProgressiveSampling sampling(std::make_unique<UniformSampler>(&clock, std::chrono::seconds(1)), {3}, goal);
+  InlineExecutor executor;
+  const Cancellation never;
+  sampling.Advance(executor, 1, never, clock, kForever);
+  ASSERT_TRUE(sampling.done());
+  EXPECT_EQ(Samples(sampling, 3), std::vector<double>(3, 16));
+}
+
+// Points of larger mean meet the relative target with fewer samples; all counts are 64 times powers of two.
+TEST(ProgressiveSamplingTest, TargetErrorStopsPointByPoint) {
+  ManualClock clock;
+  SamplingGoal goal;
+  goal.target_error = 0.005;
+  ProgressiveSampling sampling(std::make_unique<UniformSampler>(), {30}, goal);
+  InlineExecutor executor;
+  const Cancellation never;
+  sampling.Advance(executor, 1, never, clock, kForever);
+  ASSERT_TRUE(sampling.done());
+  EXPECT_EQ(sampling.end_reason(), EndReason::kTargetReached);
+  EXPECT_GT(sampling.Value(0).samples, 4 * sampling.Value(29).samples);
+  for (std::size_t p = 0; p < 30; ++p) {
+    EXPECT_GE(sampling.Value(p).samples, 64);
+    const MeanEstimate estimate = sampling.Value(p).estimates[0];
+    EXPECT_LE(estimate.StandardError(), 0.005 * estimate.mean);
+  }
+  EXPECT_LE(*sampling.Progress().relative_error, 0.005);
+}
+
+TEST(ProgressiveSamplingTest, NoPointsMeansNoWork) {
+  ManualClock clock;
+  SamplingGoal goal;
+  goal.samples = 16;
+  ProgressiveSampling sampling(std::make_unique<UniformSampler>(), {}, goal);
+  InlineExecutor executor;
+  const Cancellation never;
+  sampling.Advance(executor, 1, never, clock, kForever);
+  EXPECT_TRUE(sampling.done());
+}
+
+}  // namespace
+}  // namespace flatlight
