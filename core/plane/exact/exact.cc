@@ -27,6 +27,7 @@ double SineDifference(const Edge& a, const Edge& b, const Receiver& receiver) {
 
 ExactSolver::ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions options)
     : scene_(scene), options_(options), gatherer_(scene, bvh), sweep_(scene) {
+  if (options_.occlusion) return;
   for (std::size_t e = 0; e < scene.elements().size(); ++e) {
     const ElementId id = static_cast<ElementId>(e);
     if (scene.curve_of(id).Emits()) emitters_.push_back(id);
@@ -35,7 +36,7 @@ ExactSolver::ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions option
 
 ExactValue ExactSolver::Evaluate(const Receiver& receiver) {
   ExactValue value;
-  if (emitters_.empty()) return value;
+  if (scene_.traits().emitting_curves == 0) return value;
   if (options_.occlusion) {
     const std::vector<Part>& parts = gatherer_.Gather(receiver);
     AddIntervals(sweep_.Run(parts, receiver), parts, receiver, value);

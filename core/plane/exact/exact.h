@@ -53,7 +53,7 @@ class ExactSolver {
   ExactOptions options_;
   Gatherer gatherer_;
   Sweep sweep_;
-  std::vector<ElementId> emitters_;
+  std::vector<ElementId> emitters_;  // Where occlusion is left out.
   std::vector<Part> single_;
 };
 
