@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -127,7 +128,26 @@ TEST(RenderingTest, StatedErrorsTellTheTruth) {
   EXPECT_FALSE(wrong.Unbiased()) << "2 % more light must be noticed";
 }
 
-// The same for points that stop by themselves, each when it meets the target.
+// A furnace for each channel: E = 2 Le / (1 - rho).
+TEST(RenderingTest, ChannelsAreIndependent) {
+  const std::vector<double> reflectance = {0.2, 0.5, 0.7};
+  const std::vector<double> radiance = {1, 3, 0.5};
+  const auto scene = SquareRoom({.reflectance = reflectance, .radiance = radiance}, 4).Build();
+  std::array<HonestErrors, 3> errors;
+  for (std::uint32_t seed = 0; seed < 10; ++seed) {
+    const Ended ended = Render(scene, Sampled(128, seed));
+    for (const ProbeField& probe : ended.field->probes) {
+      ASSERT_EQ(probe.irradiance.size(), 12u);
+      for (std::size_t i = 0; i < 12; ++i) {
+        const std::size_t c = i % 3;
+        errors[c].Add(probe.irradiance[i], 2 * radiance[c] / (1 - reflectance[c]), probe.standard_error[i]);
+      }
+    }
+  }
+  for (const HonestErrors& channel : errors) EXPECT_TRUE(channel.Unbiased()) << channel.MeanZ();
+}
+
+// The same as StatedErrorsTellTheTruth for points that stop by themselves, each when it meets the target.
 TEST(RenderingTest, TargetErrorIsMetWithoutBias) {
   const auto scene = SquareRoom({.reflectance = {0.6}, .radiance = {1}}, 4).Build();
   HonestErrors errors;
