@@ -8,6 +8,7 @@
 #include "core/execution/executor.h"
 #include "server/scheduler/scheduler.h"
 #include "server/scheduler/task_queue.h"
+#include "server/service/calls_under_way.h"
 #include "server/service/guard.h"
 #include "server/service/limits.h"
 #include "server/store/job_store.h"
@@ -28,6 +29,7 @@ struct Backend {
   TaskQueue& quick;
   TaskQueue& slow;
   std::atomic<bool> draining = false;
+  CallsUnderWay calls = {};
 };
 
 }  // namespace flatlight

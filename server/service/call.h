@@ -40,7 +40,8 @@ grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* 
     reactor->Finish(ToGrpcStatus(caller.status()));
     return reactor;
   }
-  const auto finish = [reactor, answer, work, caller = *std::move(caller)](const Request& request) {
+  const auto finish = [reactor, answer, work, caller = *std::move(caller),
+                       ticket = backend.calls.Enter()](const Request& request) {
     auto response = work(caller, request);
     if (response.ok()) *answer = ToBytes(*response);
     reactor->Finish(ToGrpcStatus(response.status()));

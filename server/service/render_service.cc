@@ -110,7 +110,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::GetResult(Context* co
   if (absl::Status parsed = FromBytes(*bytes, request); !parsed.ok()) return new RefusedStream(parsed);
   const auto id = ParseJobName(request.name());
   if (!id.ok()) return new RefusedStream(id.status());
-  auto stream = std::make_unique<ResultStream>();
+  auto stream = std::make_unique<ResultStream>(backend_.calls.Enter());
   const absl::Status posted = PostTo(backend_.quick, 0, [this, id = *id, stream = stream.get()] {
     const auto job = backend_.jobs.Get(id);
     if (!job.ok()) return stream->Fail(ToGrpcStatus(job.status()));

@@ -4,9 +4,11 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "grpcpp/support/byte_buffer.h"
 #include "grpcpp/support/server_callback.h"
+#include "server/service/calls_under_way.h"
 
 namespace flatlight {
 
@@ -14,6 +16,8 @@ namespace flatlight {
 class ResultStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  public:
   static constexpr std::size_t kChunkBytes = 256u << 10;
+
+  explicit ResultStream(CallsUnderWay::Ticket ticket) : ticket_(std::move(ticket)) {}
 
   // One of the two is to be called once.
   void Send(std::shared_ptr<const std::string> bytes);
@@ -25,6 +29,7 @@ class ResultStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  private:
   void SendNext();
 
+  const CallsUnderWay::Ticket ticket_;
   std::shared_ptr<const std::string> bytes_;
   std::size_t sent_ = 0;
   grpc::ByteBuffer chunk_;  // In flight.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/server.h"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -26,6 +27,7 @@ namespace {
 
 constexpr std::size_t kMaxWaitingQuickBytes = 64u << 20;
 constexpr std::size_t kMaxWaitingSlowBytes = 256u << 20;
+constexpr std::chrono::milliseconds kFlush{100};
 constexpr int kQuickThreads = 4;
 constexpr int kSlowThreads = 2;
 
@@ -133,7 +135,9 @@ void Server::Drain(std::chrono::milliseconds grace) {
   parts.grpc->GetHealthCheckService()->Shutdown();
   parts.hub.Drain(grace);
   parts.scheduler.Stop();
-  parts.grpc->Shutdown(std::chrono::system_clock::now() + grace);
+  parts.backend.calls.AwaitNone(grace);
+  // Answers are on their way; what remains is to write them, and idle connections.
+  parts.grpc->Shutdown(std::chrono::system_clock::now() + std::min(grace, kFlush));
   parts.grpc->Wait();
   parts.grpc.reset();
 }
