@@ -312,19 +312,42 @@ TEST_F(CallsTest, AMessageOverTheLimitIsRefusedWithTheLimit) {
   EXPECT_THAT(status.error_message(), HasSubstr(std::to_string(capabilities.limits().max_message_bytes())));
 }
 
+// A unary call of any method, in bytes.
+grpc::Status CallRaw(grpc::Channel& channel, const char* method, const std::string& request, std::string& response) {
+  TestContext context;
+  const grpc::Slice slice(request);
+  const grpc::ByteBuffer bytes(&slice, 1);
+  grpc::ByteBuffer answer;
+  const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::NORMAL_RPC);
+  const grpc::Status status =
+      grpc::internal::BlockingUnaryCall<grpc::ByteBuffer, grpc::ByteBuffer, grpc::ByteBuffer, grpc::ByteBuffer>(
+          &channel, rpc, &context, bytes, &answer);
+  grpc::Slice whole;
+  if (status.ok() && answer.DumpToSingleSlice(&whole).ok()) {
+    response.assign(reinterpret_cast<const char*>(whole.begin()), whole.size());
+  }
+  return status;
+}
+
+TEST_F(CallsTest, HealthOfTheServerAndOfEachService) {
+  LoopbackServer server(Options());
+  const auto channel = server.NewChannel();
+  for (const std::string service : {"", "flatlight.v1.RenderService", "flatlight.v1.SceneService"}) {
+    // HealthCheckRequest {service = 1}, HealthCheckResponse {status = 1: SERVING = 1}.
+    const std::string request = "\x0a" + std::string(1, static_cast<char>(service.size())) + service;
+    std::string response;
+    EXPECT_TRUE(CallRaw(*channel, "/grpc.health.v1.Health/Check", request, response).ok()) << service;
+    EXPECT_EQ(response, "\x08\x01") << service;
+  }
+}
+
 TEST_F(CallsTest, RubbishIsNotAMessage) {
   LoopbackServer server(Options());
   const auto channel = server.NewChannel();
   for (const char* method : {"/flatlight.v1.RenderService/CreateJob", "/flatlight.v1.RenderService/WatchJob",
                              "/flatlight.v1.RenderService/GetResult", "/flatlight.v1.SceneService/UploadScene"}) {
-    TestContext context;
-    const grpc::Slice slice("\xff\xff\xff\xffrubbish");
-    grpc::ByteBuffer rubbish(&slice, 1);
-    grpc::ByteBuffer answer;
-    const grpc::internal::RpcMethod rpc(method, grpc::internal::RpcMethod::NORMAL_RPC);
-    const grpc::Status status =
-        grpc::internal::BlockingUnaryCall<grpc::ByteBuffer, grpc::ByteBuffer, grpc::ByteBuffer, grpc::ByteBuffer>(
-            channel.get(), rpc, &context, rubbish, &answer);
+    std::string answer;
+    const grpc::Status status = CallRaw(*channel, method, "\xff\xff\xff\xffrubbish", answer);
     EXPECT_EQ(status.error_code(), INVALID_ARGUMENT) << method << ": " << status.error_message();
     EXPECT_EQ(ReasonOf(status), "NOT_A_MESSAGE") << method;
   }
