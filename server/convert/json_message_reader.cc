@@ -40,6 +40,7 @@ std::string Wanted(const FieldDescriptor& field, bool element) {
 
 std::vector<std::string> MemberNames(const google::protobuf::OneofDescriptor& oneof) {
   std::vector<std::string> names;
+  names.reserve(static_cast<std::size_t>(oneof.field_count()));
   for (int i = 0; i < oneof.field_count(); ++i) names.push_back(oneof.field(i)->json_name());
   return names;
 }

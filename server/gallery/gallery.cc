@@ -55,7 +55,7 @@ std::vector<GalleryScene> MakeGallery() {
 const std::vector<GalleryScene>& Gallery() {
   static const auto* const gallery =
       new std::vector<GalleryScene>(MakeGallery());  // Never destroyed: no order of exit.
-  return *gallery;
+  return gallery;
 }
 
 const GalleryScene* FindGalleryScene(std::string_view name) {
