@@ -53,8 +53,8 @@ std::vector<GalleryScene> MakeGallery() {
 }  // namespace
 
 const std::vector<GalleryScene>& Gallery() {
-  static const auto* const gallery =
-      new std::vector<GalleryScene>(MakeGallery());  // Never destroyed: no order of exit.
+  // Never destroyed: there is no order of exit.
+  static const auto& gallery = *new std::vector<GalleryScene>(MakeGallery());
   return gallery;
 }
 
