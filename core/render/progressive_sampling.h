@@ -27,9 +27,9 @@ struct SamplingGoal {
 // equal counts at the end of a round, unless some met the target error.
 //
 // With a target error each point stops by crossed halves, tested at 64 samples a point, 128, 256, ...: unbiased, but
-// the error known in the end is not the one that decided. Points whose final error misses the target go on, which
-// happens to a few in a hundred; that this looks at the sample itself shifts the mean by less than a hundredth of its
-// standard error.
+// the error known in the end is not the one that decided. Points whose final error misses the target go on, a few in a
+// hundred. That this looks at the sample itself is a bias in principle; for rare bright, two-valued and exponential
+// samples it was measured as 0.00 to 0.02 (+- 0.01) of the stated error.
 class ProgressiveSampling {
  public:
   // probe_ends[i] is one past the last point of probe i.

@@ -62,7 +62,7 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
   decisions.Add(skip::kColour, traits.grey, "all spectra are grey: one channel is computed",
                 "some spectra are coloured");
   decisions.Add(skip::kVisibility, NothingBlocks(scene),
-                "nothing can stand between two points: shadow rays are left out", "curves may block each other");
+                "nothing can stand between two points: blockers are not looked for", "curves may block each other");
   if (exact) {
     const bool none = settings.derivatives == Derivatives::kNone;
     decisions.Add(skip::kDerivatives, settings.derivatives != Derivatives::kHessian,

@@ -141,6 +141,43 @@ TEST(ProgressiveSamplingTest, TargetErrorStopsPointByPoint) {
   EXPECT_LE(*sampling.Progress().relative_error, 0.005);
 }
 
+// 1 with probability 0.02, else 0.
+class RareSampler final : public PointSampler {
+ public:
+  explicit RareSampler(std::uint64_t seed) : seed_(seed) {}
+  std::size_t channels() const override { return 1; }
+  void Steps(std::size_t, std::span<double> steps) const override { steps[0] = 0; }
+  void AddBlock(std::size_t, std::uint32_t block, const Cancellation&, std::span<double> sums, double&) const override {
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      sums[r] += ToUnitInterval(ChildKey(ChildKey(seed_, block), r)) < 0.02 ? 1 : 0;
+    }
+  }
+
+ private:
+  std::uint64_t seed_;
+};
+
+// 2000 runs: a mean beyond 5 of its standard deviations has probability 6e-7.
+TEST(ProgressiveSamplingTest, TargetErrorIsMetWithoutBias) {
+  ManualClock clock;
+  SamplingGoal goal;
+  goal.target_error = 0.2;
+  InlineExecutor executor;
+  const Cancellation never;
+  double sum = 0;
+  double squares = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    ProgressiveSampling sampling(std::make_unique<RareSampler>(seed), {1}, goal);
+    sampling.Advance(executor, 1, never, clock, kForever);
+    ASSERT_EQ(sampling.end_reason(), EndReason::kTargetReached);
+    const MeanEstimate estimate = sampling.Value(0).estimates[0];
+    EXPECT_LE(estimate.StandardError(), 0.2 * estimate.mean);
+    sum += estimate.mean - 0.02;
+    squares += (estimate.mean - 0.02) * (estimate.mean - 0.02);
+  }
+  EXPECT_LT(std::abs(sum), 5 * std::sqrt(squares)) << sum / 2000;
+}
+
 TEST(ProgressiveSamplingTest, NoPointsMeansNoWork) {
   ManualClock clock;
   SamplingGoal goal;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole renderings: equal bits however they are worked on, errors that tell the truth, skips that change nothing.
+// Whole renderings: equal bits however they are worked on, and what a field holds.
 #include "core/render/rendering.h"
 
 #include <gtest/gtest.h>
@@ -11,66 +11,16 @@
 #include <cstring>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/execution/thread_pool.h"
 #include "core/render/plan.h"
-#include "core/render/skips.h"
-#include "tests/support/transport/honest_errors.h"
+#include "tests/support/transport/render.h"
 #include "tests/support/transport/scene_maker.h"
 
 namespace flatlight {
 namespace {
-
-constexpr Clock::Duration kForever = Clock::Duration::max();
-
-Plan PlanFor(const Scene& scene, const Settings& settings) {
-  Diagnostics diagnostics;
-  std::optional<Plan> plan = MakePlan(scene, settings, diagnostics);
-  EXPECT_TRUE(plan.has_value()) << (diagnostics.empty() ? "" : diagnostics.kept()[0].message);
-  return plan.value_or(Plan());
-}
-
-struct Ended {
-  std::shared_ptr<const Field> field;
-  EndReason reason = EndReason::kConverged;
-};
-
-Ended Render(const std::shared_ptr<const Scene>& scene, const Settings& settings, int threads = 1,
-             Clock::Duration budget = kForever) {
-  const std::unique_ptr<Rendering> rendering = StartRendering(scene, PlanFor(*scene, settings));
-  ThreadPool pool(threads);
-  const SteadyClock clock;
-  const Cancellation never;
-  while (!rendering->done()) rendering->Advance(pool, never, clock, budget);
-  return {rendering->Snapshot(), rendering->end_reason()};
-}
-
-// FNV-1a over the bits of all values.
-std::uint64_t HashOf(const Field& field) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const ProbeField& probe : field.probes) {
-    for (const std::vector<double>* values : {&probe.irradiance, &probe.standard_error, &probe.gradient, &probe.hessian,
-                                              &probe.gradient_error, &probe.hessian_error, &probe.samples}) {
-      for (const double value : *values) {
-        std::uint64_t bits;
-        std::memcpy(&bits, &value, sizeof(bits));
-        hash = (hash ^ bits) * 0x100000001b3u;
-      }
-    }
-  }
-  return hash;
-}
-
-Settings Sampled(std::uint32_t samples, std::uint32_t seed = 0) {
-  Settings settings;
-  settings.method = Method::kPathTracing;
-  settings.samples = samples;
-  settings.seed = seed;
-  return settings;
-}
 
 TEST(RenderingTest, BitsDependOnNothingButTheBlocksDone) {
   const auto scene = FurnishedRoom(false, 5).Build();
@@ -108,68 +58,6 @@ TEST(RenderingTest, SamplesAreRoundedUpToBlocks) {
   }
 }
 
-// A furnace with much noise; 16 points, 40 seeds: 640 values.
-TEST(RenderingTest, StatedErrorsTellTheTruth) {
-  const auto scene = SquareRoom({.reflectance = {0.6}, .radiance = {1}}, 4).Build();
-  HonestErrors errors;
-  HonestErrors wrong;
-  for (std::uint32_t seed = 0; seed < 40; ++seed) {
-    const Ended ended = Render(scene, Sampled(256, seed));
-    for (const ProbeField& probe : ended.field->probes) {
-      for (std::size_t i = 0; i < probe.irradiance.size(); ++i) {
-        errors.Add(probe.irradiance[i], 5, probe.standard_error[i]);
-        wrong.Add(1.02 * probe.irradiance[i], 5, probe.standard_error[i]);
-      }
-    }
-  }
-  EXPECT_EQ(errors.count(), 640u);
-  EXPECT_TRUE(errors.Unbiased()) << errors.MeanZ();
-  EXPECT_TRUE(errors.RightSize()) << errors.MeanSquareZ();
-  EXPECT_FALSE(wrong.Unbiased()) << "2 % more light must be noticed";
-}
-
-// A furnace for each channel: E = 2 Le / (1 - rho).
-TEST(RenderingTest, ChannelsAreIndependent) {
-  const std::vector<double> reflectance = {0.2, 0.5, 0.7};
-  const std::vector<double> radiance = {1, 3, 0.5};
-  const auto scene = SquareRoom({.reflectance = reflectance, .radiance = radiance}, 4).Build();
-  std::array<HonestErrors, 3> errors;
-  for (std::uint32_t seed = 0; seed < 10; ++seed) {
-    const Ended ended = Render(scene, Sampled(128, seed));
-    for (const ProbeField& probe : ended.field->probes) {
-      ASSERT_EQ(probe.irradiance.size(), 12u);
-      for (std::size_t i = 0; i < 12; ++i) {
-        const std::size_t c = i % 3;
-        errors[c].Add(probe.irradiance[i], 2 * radiance[c] / (1 - reflectance[c]), probe.standard_error[i]);
-      }
-    }
-  }
-  for (const HonestErrors& channel : errors) EXPECT_TRUE(channel.Unbiased()) << channel.MeanZ();
-}
-
-// The same as StatedErrorsTellTheTruth for points that stop by themselves, each when it meets the target.
-TEST(RenderingTest, TargetErrorIsMetWithoutBias) {
-  const auto scene = SquareRoom({.reflectance = {0.6}, .radiance = {1}}, 4).Build();
-  HonestErrors errors;
-  for (std::uint32_t seed = 0; seed < 40; ++seed) {
-    Settings settings;
-    settings.seed = seed;
-    settings.target_error = 0.02;
-    const Ended ended = Render(scene, settings);
-    EXPECT_EQ(ended.reason, EndReason::kTargetReached);
-    for (const ProbeField& probe : ended.field->probes) {
-      double mean = 0;
-      for (const double e : probe.irradiance) mean += e / static_cast<double>(probe.irradiance.size());
-      for (std::size_t i = 0; i < probe.irradiance.size(); ++i) {
-        EXPECT_LE(probe.standard_error[i], 0.02 * std::max(probe.irradiance[i], 0.01 * mean));
-        EXPECT_GE(probe.samples[i], 64);
-        errors.Add(probe.irradiance[i], 5, probe.standard_error[i]);
-      }
-    }
-  }
-  EXPECT_TRUE(errors.Unbiased()) << errors.MeanZ();
-}
-
 TEST(RenderingTest, SamplesLimitATargetError) {
   const auto scene = SquareRoom({.reflectance = {0.6}, .radiance = {1}}, 1).Build();
   Settings settings = Sampled(200);
@@ -177,100 +65,6 @@ TEST(RenderingTest, SamplesLimitATargetError) {
   const Ended ended = Render(scene, settings);
   EXPECT_EQ(ended.reason, EndReason::kSamplesDone);
   EXPECT_EQ(ended.field->probes[0].samples[0], 208);
-}
-
-// Rare and bright: only paths through a slit reach the lit chamber. The mean over many seeds is the truth, as a long
-// rendering knows it.
-TEST(RenderingTest, StoppingAtATargetDoesNotBiasRareBrightLight) {
-  SceneMaker maker;
-  maker.Polyline("chambers", {{0, 0}, {4, 0}, {4, 1}, {0, 1}}, true, {.reflectance = {0.7}});
-  maker.Segment("lower wall", {2, 0}, {2, 0.46}, {.reflectance = {0.3}});
-  maker.Segment("upper wall", {2, 0.54}, {2, 1}, {.reflectance = {0.3}});
-  maker.Segment("lamp", {3.9, 0.9}, {3.7, 0.9}, {.radiance = {50}});
-  maker.PointProbe({0.7, 0.05}, {0, 1});
-  const auto scene = maker.Build();
-  const Ended truth = Render(scene, Sampled(1 << 17, 1000));
-  double sum = 0;
-  double squares = 0;
-  constexpr int kRuns = 100;
-  const double mean = truth.field->probes[0].irradiance[0];
-  for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
-    Settings settings;
-    settings.seed = seed;
-    settings.target_error = 0.3;
-    const double difference = Render(scene, settings).field->probes[0].irradiance[0] - mean;
-    sum += difference;
-    squares += difference * difference;
-  }
-  const double variance = squares + kRuns * kRuns * std::pow(truth.field->probes[0].standard_error[0], 2);
-  EXPECT_LT(std::abs(sum), 5 * std::sqrt(variance)) << sum / kRuns << " of " << mean;
-}
-
-TEST(RenderingTest, EverySkipLeavesTheSameBits) {
-  struct Case {
-    std::string name;
-    std::shared_ptr<const Scene> scene;
-    Settings settings;
-    const char* skip;
-  };
-  Settings target = Sampled(4096);
-  target.target_error = 0.05;
-  Settings direct = Sampled(128);
-  direct.max_bounces = 0;
-  Settings exact;
-  exact.max_bounces = 0;
-  Settings exact_value = exact;
-  exact_value.derivatives = Derivatives::kNone;
-  SceneMaker dark;
-  dark.Segment("floor", {0, 0}, {1, 0}, {.reflectance = {0.5}}).Probe("floor", 3);
-  SceneMaker black = UnitLight();
-  black.Segment("blocker", {0.5, 0.5}, {1.2, 0.5}).Probe("floor", 5);
-  SceneMaker partly_black = black;
-  partly_black.Segment("wall", {1.5, 0}, {1.5, 1}, {.reflectance = {0.8}});
-  SceneMaker turned = black;
-  turned.Segment("turned", {0, 2}, {1, 2}, {.radiance = {1}}).Segment("below", {0, -1}, {1, -1}, {.radiance = {2}});
-  SceneMaker grey = FurnishedRoom(true, 3);
-  SceneMaker grey3 = UnitLight();
-  grey3.Segment("wall", {1.5, 0}, {1.5, 1}, {.reflectance = {0.5, 0.5, 0.5}}).Probe("floor", 3);
-  SceneMaker convex = SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 3);
-  SceneMaker facing = UnitLight();
-  facing.Probe("floor", 5).Probe("light", 2);
-  const std::vector<Case> cases = {
-      {"dark", dark.Build(), Sampled(64), skip::kEmission},
-      {"dark exact", dark.Build(), exact, skip::kEmission},
-      {"grey", grey.Build(), Sampled(64), skip::kColour},
-      {"grey with 3 channels", grey3.Build(), Sampled(64), skip::kColour},
-      {"grey exact", grey.Build(), exact, skip::kColour},
-      {"convex", convex.Build(), Sampled(64), skip::kVisibility},
-      {"facing", facing.Build(), direct, skip::kVisibility},
-      {"facing exact", facing.Build(), exact, skip::kVisibility},
-      {"no derivatives", grey.Build(), exact_value, skip::kDerivatives},
-      {"black", black.Build(), Sampled(64), skip::kBounces},
-      {"black paths", black.Build(), Sampled(64), skip::kBlackPaths},
-      {"partly black", partly_black.Build(), Sampled(64), skip::kBlackPaths},
-      {"turned away", turned.Build(), direct, skip::kUnseenEmitters},
-      {"converged", convex.Build(), target, skip::kConvergedPoints},
-  };
-  for (const Case& c : cases) {
-    SCOPED_TRACE(c.name);
-    const Plan plan = PlanFor(*c.scene, c.settings);
-    EXPECT_TRUE(plan.Takes(c.skip));
-    Settings disabled = c.settings;
-    disabled.no_skip = {c.skip};
-    EXPECT_TRUE(PlanFor(*c.scene, disabled).Disables(c.skip));
-    const Ended with = Render(c.scene, c.settings);
-    const Ended without = Render(c.scene, disabled);
-    ASSERT_EQ(with.field->probes.size(), without.field->probes.size());
-    for (std::size_t p = 0; p < with.field->probes.size(); ++p) {
-      EXPECT_EQ(with.field->probes[p].irradiance, without.field->probes[p].irradiance);
-      EXPECT_EQ(with.field->probes[p].gradient, without.field->probes[p].gradient);
-      EXPECT_EQ(with.field->probes[p].samples, without.field->probes[p].samples);
-      EXPECT_EQ(with.field->probes[p].standard_error, without.field->probes[p].standard_error);
-    }
-    if (c.skip == skip::kConvergedPoints || c.skip == skip::kVisibility || c.skip == skip::kBounces) {
-      EXPECT_LE(with.field->rays, without.field->rays);
-    }
-  }
 }
 
 TEST(RenderingTest, FieldsAreInWorldUnits) {

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors that renderings state, against truths in closed form.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "core/render/rendering.h"
+#include "tests/support/transport/honest_errors.h"
+#include "tests/support/transport/render.h"
+#include "tests/support/transport/scene_maker.h"
+
+namespace flatlight {
+namespace {
+
+// A furnace with much noise; 16 points, 40 seeds: 640 values.
+TEST(HonestRenderingTest, StatedErrorsTellTheTruth) {
+  const auto scene = SquareRoom({.reflectance = {0.6}, .radiance = {1}}, 4).Build();
+  HonestErrors errors;
+  HonestErrors wrong;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    const Ended ended = Render(scene, Sampled(256, seed));
+    for (const ProbeField& probe : ended.field->probes) {
+      for (std::size_t i = 0; i < probe.irradiance.size(); ++i) {
+        errors.Add(probe.irradiance[i], 5, probe.standard_error[i]);
+        wrong.Add(1.02 * probe.irradiance[i], 5, probe.standard_error[i]);
+      }
+    }
+  }
+  EXPECT_EQ(errors.count(), 640u);
+  EXPECT_TRUE(errors.Unbiased()) << errors.MeanZ();
+  EXPECT_TRUE(errors.RightSize()) << errors.MeanSquareZ();
+  EXPECT_FALSE(wrong.Unbiased()) << "2 % more light must be noticed";
+}
+
+// A furnace for each channel: E = 2 Le / (1 - rho).
+TEST(HonestRenderingTest, ChannelsAreIndependent) {
+  const std::vector<double> reflectance = {0.2, 0.5, 0.7};
+  const std::vector<double> radiance = {1, 3, 0.5};
+  const auto scene = SquareRoom({.reflectance = reflectance, .radiance = radiance}, 4).Build();
+  std::array<HonestErrors, 3> errors;
+  for (std::uint32_t seed = 0; seed < 10; ++seed) {
+    const Ended ended = Render(scene, Sampled(128, seed));
+    for (const ProbeField& probe : ended.field->probes) {
+      ASSERT_EQ(probe.irradiance.size(), 12u);
+      for (std::size_t i = 0; i < 12; ++i) {
+        const std::size_t c = i % 3;
+        errors[c].Add(probe.irradiance[i], 2 * radiance[c] / (1 - reflectance[c]), probe.standard_error[i]);
+      }
+    }
+  }
+  for (const HonestErrors& channel : errors) EXPECT_TRUE(channel.Unbiased()) << channel.MeanZ();
+}
+
+// The same as StatedErrorsTellTheTruth for points that stop by themselves, each when it meets the target.
+TEST(HonestRenderingTest, TargetErrorIsMetWithoutBias) {
+  const auto scene = SquareRoom({.reflectance = {0.6}, .radiance = {1}}, 4).Build();
+  HonestErrors errors;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    Settings settings;
+    settings.seed = seed;
+    settings.target_error = 0.02;
+    const Ended ended = Render(scene, settings);
+    EXPECT_EQ(ended.reason, EndReason::kTargetReached);
+    for (const ProbeField& probe : ended.field->probes) {
+      double mean = 0;
+      for (const double e : probe.irradiance) mean += e / static_cast<double>(probe.irradiance.size());
+      for (std::size_t i = 0; i < probe.irradiance.size(); ++i) {
+        EXPECT_LE(probe.standard_error[i], 0.02 * std::max(probe.irradiance[i], 0.01 * mean));
+        EXPECT_GE(probe.samples[i], 64);
+        errors.Add(probe.irradiance[i], 5, probe.standard_error[i]);
+      }
+    }
+  }
+  EXPECT_TRUE(errors.Unbiased()) << errors.MeanZ();
+}
+
+// Rare and bright: only paths through a slit reach the lit chamber. The mean over many seeds is the truth, as a long
+// rendering knows it.
+TEST(HonestRenderingTest, StoppingAtATargetDoesNotBiasRareBrightLight) {
+  SceneMaker maker;
+  maker.Polyline("chambers", {{0, 0}, {4, 0}, {4, 1}, {0, 1}}, true, {.reflectance = {0.7}});
+  maker.Segment("lower wall", {2, 0}, {2, 0.46}, {.reflectance = {0.3}});
+  maker.Segment("upper wall", {2, 0.54}, {2, 1}, {.reflectance = {0.3}});
+  maker.Segment("lamp", {3.9, 0.9}, {3.7, 0.9}, {.radiance = {50}});
+  maker.PointProbe({0.7, 0.05}, {0, 1});
+  const auto scene = maker.Build();
+  const Ended truth = Render(scene, Sampled(1 << 17, 1000));
+  double sum = 0;
+  double squares = 0;
+  constexpr int kRuns = 100;
+  const double mean = truth.field->probes[0].irradiance[0];
+  for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
+    Settings settings;
+    settings.seed = seed;
+    settings.target_error = 0.3;
+    const double difference = Render(scene, settings).field->probes[0].irradiance[0] - mean;
+    sum += difference;
+    squares += difference * difference;
+  }
+  const double variance = squares + kRuns * kRuns * std::pow(truth.field->probes[0].standard_error[0], 2);
+  EXPECT_LT(std::abs(sum), 5 * std::sqrt(variance)) << sum / kRuns << " of " << mean;
+}
+
+}  // namespace
+}  // namespace flatlight
