@@ -48,7 +48,7 @@ absl::StatusOr<ServerAddress> ParseServerAddress(const std::string& text, const 
   std::string host = text.substr(0, colon);
   const std::string port = text.substr(colon + 1);
   if (!IsPort(port)) return refuse("has the port '" + port + "', not a number from 1 to 65535");
-  const bool bracketed = host.size() > 2 && host.front() == '[' && host.back() == ']';
+  const bool bracketed = host.size() >= 2 && host.front() == '[' && host.back() == ']';
   if (bracketed) host = host.substr(1, host.size() - 2);
   if (host.empty()) return refuse("has no host");
   if (host.find('/') != std::string::npos) return refuse("is not an address");

@@ -102,7 +102,7 @@ absl::Status FindGnuplot() {
 absl::StatusOr<std::string> RunGnuplot(const std::string& script) {
   MemoryFile input, output, errors;
   if (input.fd() < 0 || output.fd() < 0 || errors.fd() < 0 || !input.Fill(script))
-    return absl::InternalError(std::string("no memory for the plot: ") + std::strerror(errno));
+    return absl::InternalError(std::string("no room for the plot in memory: ") + std::strerror(errno));
   const int status = Run(input, output, errors);
   if (status < 0) return absl::InternalError(std::string("gnuplot could not be run: ") + std::strerror(errno));
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)

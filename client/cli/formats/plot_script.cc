@@ -29,13 +29,13 @@ constexpr int kGap = 16;              // Between panels.
 constexpr int kFoot = 58;             // Height of the axis at the bottom.
 constexpr std::size_t kMarkers = 48;  // Up to this many points are marked.
 
-// User text inside single quotes. Enhanced text has its own special characters.
+// User text inside single quotes. Enhanced text has its own special characters. An apostrophe becomes a typographic
+// one: gnuplot's own way, to double it, fails at the beginning of a text.
 std::string Quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : CutToWidth(Printable(text), 60)) {
     if (std::string("{}^_@&~\\").find(c) != std::string::npos) quoted += '\\';
-    quoted += c;
-    if (c == '\'') quoted += c;
+    quoted += c == '\'' ? "\u2019" : std::string(1, c);
   }
   return quoted + "'";
 }

@@ -60,9 +60,8 @@ absl::Status CheckWritable(const std::string& path) {
 absl::StatusOr<std::unique_ptr<AtomicFile>> AtomicFile::Create(const std::string& path) {
   if (const absl::Status status = CheckWritable(path); !status.ok()) return status;
   const std::string target = Resolved(path);
-  const std::string extension = fs::path(target).extension().string();
-  std::string temporary = FolderOf(target) + "/.flatlight-XXXXXX" + extension;
-  const int fd = mkostemps(temporary.data(), static_cast<int>(extension.size()), O_CLOEXEC);
+  std::string temporary = FolderOf(target) + "/.flatlight-XXXXXX";
+  const int fd = mkostemp(temporary.data(), O_CLOEXEC);
   if (fd < 0) return LastError(path);
   fchmod(fd, FileMode());
   return std::unique_ptr<AtomicFile>(new AtomicFile(path, target, temporary, fd));

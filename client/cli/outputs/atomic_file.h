@@ -25,8 +25,6 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  // For a library that writes files itself; ends as `path` does.
-  const std::string& temporary_path() const { return temporary_; }
   absl::Status Write(std::string_view bytes);
   // Onto the disk, then under its name.
   absl::Status Commit();

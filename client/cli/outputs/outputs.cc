@@ -51,6 +51,13 @@ absl::Status CheckOutput(const Output& output) {
   return CheckWritable(output.path);
 }
 
+absl::StatusOr<std::string> Pictures(const v1::RenderResult& result, const std::string& ending) {
+  std::vector<Picture> pictures = PicturesOf(result);
+  if (pictures.empty()) return absl::FailedPreconditionError("the result has no points");
+  if (ending == ".hdr") pictures = {StackedColour(pictures)};
+  return PictureBytes(ending, pictures);
+}
+
 absl::StatusOr<std::string> Bytes(const v1::RenderResult& result, OutputForm form) {
   switch (form) {
     case OutputForm::kCsv:
@@ -61,24 +68,16 @@ absl::StatusOr<std::string> Bytes(const v1::RenderResult& result, OutputForm for
       return RunGnuplot(PlotScript(result, PlotForm::kSvg));
     case OutputForm::kPng:
       return RunGnuplot(PlotScript(result, PlotForm::kPng));
+    case OutputForm::kExr:
+      return Pictures(result, ".exr");
+    case OutputForm::kHdr:
+      return Pictures(result, ".hdr");
     default:
       return ToJson(result);
   }
 }
 
-absl::Status WritePictureFile(const v1::RenderResult& result, const Output& output) {
-  std::vector<Picture> pictures = PicturesOf(result);
-  if (pictures.empty()) return OutputError(output.path, "the result has no points");
-  if (output.form == OutputForm::kHdr) pictures = {StackedColour(pictures)};
-  auto file = AtomicFile::Create(output.path);
-  if (!file.ok()) return file.status();
-  const absl::Status written = WritePictures((*file)->temporary_path(), pictures);
-  if (!written.ok()) return OutputError(output.path, Reason(written));
-  return (*file)->Commit();
-}
-
 absl::Status WriteOutput(const v1::RenderResult& result, const Output& output) {
-  if (IsPicture(output.form)) return WritePictureFile(result, output);
   const absl::StatusOr<std::string> bytes = Bytes(result, output.form);
   if (!bytes.ok()) return OutputError(output.path, Reason(bytes.status()));
   return output.path == "-" ? PrintBytes(*bytes) : WriteFileAtomically(output.path, *bytes);

@@ -52,7 +52,7 @@ absl::Status FindPictureModule() {
   return absl::FailedPreconditionError("pictures need " + path + ", which is not there");
 }
 
-absl::Status WritePictures(const std::string& path, const std::vector<Picture>& pictures) {
+absl::StatusOr<std::string> PictureBytes(const std::string& ending, const std::vector<Picture>& pictures) {
   // Never unloaded: libraries below it register handlers that run at exit.
   void* module = dlopen(ModulePath().c_str(), RTLD_NOW | RTLD_LOCAL);
   if (module == nullptr) return absl::FailedPreconditionError(dlerror());
@@ -61,10 +61,14 @@ absl::Status WritePictures(const std::string& path, const std::vector<Picture>& 
   std::vector<FlatlightPicture> rows;
   for (const Picture& picture : pictures)
     rows.push_back({picture.name.c_str(), picture.width, picture.height, picture.channels, picture.pixels.data()});
+  std::string bytes;
+  const auto take = [](void* context, const unsigned char* data, std::size_t size) {
+    static_cast<std::string*>(context)->assign(reinterpret_cast<const char*>(data), size);
+  };
   std::array<char, 1024> error{};
-  if (write(path.c_str(), rows.data(), static_cast<int>(rows.size()), error.data(), error.size()) == 0)
-    return absl::OkStatus();
-  return absl::InternalError(error.data());
+  if (write(ending.c_str(), rows.data(), static_cast<int>(rows.size()), take, &bytes, error.data(), error.size()) != 0)
+    return absl::InternalError(error.data());
+  return bytes;
 }
 
 }  // namespace flatlight

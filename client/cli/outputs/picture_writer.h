@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "flatlight/v1/result.pb.h"
 
 namespace flatlight {
@@ -28,8 +29,8 @@ Picture StackedColour(const std::vector<Picture>& pictures);
 // OK if the module that writes pictures lies beside the program.
 absl::Status FindPictureModule();
 
-// `path` ends in .exr (a part for each picture) or .hdr (one picture of 3 channels). Fails with the reason alone.
-absl::Status WritePictures(const std::string& path, const std::vector<Picture>& pictures);
+// A file in memory. `ending` is .exr (a part for each picture) or .hdr (one picture of 3 channels).
+absl::StatusOr<std::string> PictureBytes(const std::string& ending, const std::vector<Picture>& pictures);
 
 }  // namespace flatlight
 

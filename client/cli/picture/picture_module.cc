@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/picture/picture_module.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,15 +25,20 @@ std::vector<OIIO::ImageSpec> Specs(const FlatlightPicture* pictures, int count) 
   return specs;
 }
 
-// Empty, or why it failed.
-std::string Write(const std::string& path, const FlatlightPicture* pictures, int count) {
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path);
+using Bytes = std::vector<unsigned char>;
+
+// Into memory, because not every format notices when a disk is full. Returns why it failed; empty if it didn't.
+std::string Write(const std::string& ending, const FlatlightPicture* pictures, int count, Bytes& bytes) {
+  const std::string name = "picture" + ending;  // No file: only the ending counts.
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name);
   if (!output) return OIIO::geterror();
+  OIIO::Filesystem::IOVecOutput memory(bytes);
+  if (!output->set_ioproxy(&memory)) return "the format " + ending + " cannot be written to memory";
   const std::vector<OIIO::ImageSpec> specs = Specs(pictures, count);
-  const bool open = count == 1 ? output->open(path, specs[0]) : output->open(path, count, specs.data());
+  const bool open = count == 1 ? output->open(name, specs[0]) : output->open(name, count, specs.data());
   if (!open) return output->geterror();
   for (int i = 0; i < count; ++i) {
-    if (i > 0 && !output->open(path, specs[static_cast<std::size_t>(i)], OIIO::ImageOutput::AppendSubimage))
+    if (i > 0 && !output->open(name, specs[static_cast<std::size_t>(i)], OIIO::ImageOutput::AppendSubimage))
       return output->geterror();
     if (!output->write_image(OIIO::TypeDesc::FLOAT, pictures[i].pixels)) return output->geterror();
   }
@@ -40,13 +47,16 @@ std::string Write(const std::string& path, const FlatlightPicture* pictures, int
 
 }  // namespace
 
-int flatlight_write_pictures(const char* path, const FlatlightPicture* pictures, int count, char* error,
-                             std::size_t error_size) {
+int flatlight_write_pictures(const char* ending, const FlatlightPicture* pictures, int count,
+                             void (*take)(void* context, const unsigned char* bytes, std::size_t size), void* context,
+                             char* error, std::size_t error_size) {
   try {
-    const std::string reason = Write(path, pictures, count);
+    Bytes bytes;
+    const std::string reason = Write(ending, pictures, count, bytes);
+    if (reason.empty()) take(context, bytes.data(), bytes.size());
     std::snprintf(error, error_size, "%s", reason.c_str());
     return reason.empty() ? 0 : 1;
-  } catch (const std::exception& failure) {  // OpenEXR reports a full disk so.
+  } catch (const std::exception& failure) {  // OpenEXR throws.
     std::snprintf(error, error_size, "%s", failure.what());
     return 1;
   }

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace flatlight {
 namespace {
@@ -18,7 +19,8 @@ std::string Print(const char* format, int digits, double value) {
 
 // `digits` significant digits without an exponent, for values from 1e-4 to 1e6 or so.
 std::string Plain(double value, int digits) {
-  const int magnitude = value == 0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value) * (1 + 1e-9))));
+  const std::string scientific = Print("%.*e", digits - 1, value);  // Rounding may have made it a digit longer.
+  const int magnitude = std::atoi(scientific.c_str() + scientific.find('e') + 1);
   return Print("%.*f", std::max(0, digits - 1 - magnitude), value);
 }
 

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/options/command_line.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace flatlight {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+absl::StatusOr<CommandLine> Parse(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "flatlight");
+  return ParseCommandLine(static_cast<int>(arguments.size()), arguments.data(), "1.2.3");
+}
+
+std::string ErrorOf(const std::vector<const char*>& arguments) {
+  const auto line = Parse(arguments);
+  return line.ok() ? "" : std::string(line.status().message().data(), line.status().message().size());
+}
+
+TEST(CommandLine, AllOfRender) {
+  const auto line = Parse({"render",
+                           "-",
+                           "--method",
+                           "path-tracing",
+                           "--samples",
+                           "64",
+                           "--max-bounces",
+                           "0",
+                           "--seed",
+                           "7",
+                           "--derivatives",
+                           "none",
+                           "--target-error",
+                           "0.01",
+                           "--time-limit",
+                           "1e3",
+                           "--threads",
+                           "2",
+                           "--no-skip",
+                           "colour",
+                           "--no-skip",
+                           "visibility",
+                           "-o",
+                           "a.json",
+                           "-o",
+                           "-",
+                           "--json",
+                           "-q",
+                           "--server",
+                           "host:1"});
+  ASSERT_TRUE(line.ok()) << line.status();
+  EXPECT_EQ(line->command, "render");
+  EXPECT_EQ(line->scene, "-");
+  EXPECT_THAT(line->outputs, ElementsAre("a.json", "-"));
+  EXPECT_TRUE(line->json && line->quiet);
+  EXPECT_EQ(line->server, "host:1");
+  const v1::Settings& settings = line->settings;
+  EXPECT_EQ(settings.method(), v1::Settings::PATH_TRACING);
+  EXPECT_EQ(settings.samples(), 64U);
+  EXPECT_TRUE(settings.has_max_bounces());
+  EXPECT_EQ(settings.max_bounces(), 0U);
+  EXPECT_EQ(settings.seed(), 7U);
+  EXPECT_EQ(settings.derivatives(), v1::Settings::NONE);
+  EXPECT_EQ(settings.target_error(), 0.01);
+  EXPECT_EQ(settings.time_limit(), 1000);
+  EXPECT_EQ(settings.threads(), 2U);
+  EXPECT_THAT(settings.no_skip(), ElementsAre("colour", "visibility"));
+}
+
+TEST(CommandLine, NothingIsSetThatWasNotAskedFor) {
+  const auto line = Parse({"submit", "scene.json"});
+  ASSERT_TRUE(line.ok());
+  EXPECT_EQ(line->settings.ByteSizeLong(), 0U);
+  EXPECT_FALSE(line->tolerance);
+}
+
+TEST(CommandLine, OptionsTakeOneValueEach) {
+  const auto line = Parse({"render", "-o", "a.json", "scene.json", "--no-skip", "colour"});
+  ASSERT_TRUE(line.ok()) << line.status();
+  EXPECT_EQ(line->scene, "scene.json");
+}
+
+TEST(CommandLine, TheServerMayComeFirst) {
+  const auto line = Parse({"--server", "unix:/x", "jobs"});
+  ASSERT_TRUE(line.ok()) << line.status();
+  EXPECT_EQ(line->server, "unix:/x");
+}
+
+TEST(CommandLine, HelpAndVersionAreTexts) {
+  EXPECT_EQ(Parse({"--version"})->text, "flatlight 1.2.3\n");
+  EXPECT_THAT(Parse({"--help"})->text, HasSubstr("130 interrupted"));
+  EXPECT_EQ(Parse({"--help"})->command, "");
+  for (const char* command :
+       {"render", "submit", "watch", "jobs", "show", "fetch", "cancel", "scenes", "explain", "validate", "compare"}) {
+    EXPECT_THAT(Parse({command, "--help"})->text, HasSubstr(command));
+    EXPECT_THAT(Parse({"--help"})->text, HasSubstr(command));
+  }
+}
+
+TEST(CommandLine, MistakesAreNamed) {
+  EXPECT_THAT(ErrorOf({}), HasSubstr("command"));
+  EXPECT_THAT(ErrorOf({"bogus", "x"}), HasSubstr("'bogus' is not a command"));
+  EXPECT_THAT(ErrorOf({"render"}), HasSubstr("SCENE is required; see flatlight render --help"));
+  EXPECT_THAT(ErrorOf({"render", "a", "b"}), HasSubstr("b"));
+  EXPECT_THAT(ErrorOf({"render", "a", "--photons", "3"}), HasSubstr("--photons"));
+  EXPECT_THAT(ErrorOf({"compare", "a"}), HasSubstr("RESULTS"));
+  EXPECT_THAT(ErrorOf({"jobs", "--server", ""}), HasSubstr("--server"));
+  EXPECT_EQ(ErrorOf({"compare", "a", "b", "--tolerance", "-1"}), "--tolerance: '-1'; must be a number from 0");
+  EXPECT_EQ(ErrorOf({"render", "a", "--method", "magic"}), "--method: 'magic'; must be one of exact, path-tracing");
+  EXPECT_EQ(ErrorOf({"render", "a", "--samples", "0", "--threads", "x"}),
+            "--samples: '0'; must be a whole number from 1 to 4294967295\n"
+            "--threads: 'x'; must be a whole number from 1 to 4294967295");
+  EXPECT_EQ(ErrorOf({"render", "a", "--target-error", "1.5"}),
+            "--target-error: '1.5'; must be a number above 0, at most 1");
+  for (const char* bad : {"", "nan", "inf", "-1", "0", "1x", "1e999"})
+    EXPECT_THAT(ErrorOf({"render", "a", "--time-limit", bad}), HasSubstr("--time-limit: '")) << bad;
+}
+
+}  // namespace
+}  // namespace flatlight
