@@ -11,6 +11,8 @@ namespace flatlight {
 namespace {
 
 constexpr std::uint32_t kNotAPiece = 0xffffffff;
+// Of very many pieces a part is summed and scaled up: the sum is needed once a point, as a scale of errors.
+constexpr std::size_t kMostSummed = 4096;
 
 }  // namespace
 
@@ -54,12 +56,14 @@ std::size_t EmitterSampler::DropUnseen() {
 }
 
 Spectrum EmitterSampler::Unblocked(const Vertex& vertex) const {
+  const std::size_t stride = pieces_.size() / kMostSummed + 1;
   Spectrum sum;
   Spectrum brightest;
-  for (const Piece& piece : pieces_) {
+  for (std::size_t i = 0; i < pieces_.size(); i += stride) {
+    const Piece& piece = pieces_[i];
     const EmitterRange range = RangeOf(piece.element, piece.sides, vertex);
     if (range.kind == EmitterRange::Kind::kNone) continue;
-    sum = sum + range.width * piece.radiance;
+    sum = sum + (static_cast<double>(stride) * range.width) * piece.radiance;
     for (int c = 0; c < kMaxChannels; ++c) brightest[c] = std::max(brightest[c], piece.radiance[c]);
   }
   // Emitters in one direction hide each other: all directions at the largest radiance are the most there can be.

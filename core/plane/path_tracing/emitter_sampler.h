@@ -38,7 +38,8 @@ class EmitterSampler {
   // wanted. Returns how many were left out.
   std::size_t DropUnseen();
 
-  // Irradiance from all pieces if nothing blocked them; a guess for arcs seen partly from inside.
+  // Irradiance from all pieces if nothing blocked them; a guess for arcs seen partly from inside, and for thousands of
+  // pieces.
   Spectrum Unblocked(const Vertex& vertex) const;
 
   bool empty() const { return pieces_.empty(); }
