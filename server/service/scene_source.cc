@@ -72,9 +72,9 @@ absl::StatusOr<std::shared_ptr<const Scene>> LoadScene(const v1::SceneSource& so
       const auto named = FindScene(source.name(), scenes);
       if (!named.ok()) return named.status();
       v1::Scene proto;
-      const bool read = ReadSceneJson(*named->json, proto, diagnostics);
+      ReadSceneJson(*named->json, proto, diagnostics);  // Mistakes of form do not hide those of meaning.
       if (!named->info.gallery()) scenes.SetTitle(source.name().substr(kPrefix.size()), proto.name());
-      if (!read || !WithinLimits(proto, limits, diagnostics)) return nothing;
+      if (!WithinLimits(proto, limits, diagnostics)) return nothing;
       return SceneFromProto(proto, diagnostics);
     }
     case v1::SceneSource::SOURCE_NOT_SET:
