@@ -59,6 +59,7 @@ class Watcher final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public 
   std::size_t next_message_ ABSL_GUARDED_BY(mutex_) = 0;
   Write writing_ ABSL_GUARDED_BY(mutex_) = Write::kNone;
   grpc::ByteBuffer bytes_ ABSL_GUARDED_BY(mutex_);  // In flight.
+  // Long ago at first, so that a resumed watch without news gets a heartbeat at once and knows that it is connected.
   Time last_write_ ABSL_GUARDED_BY(mutex_);
   Time next_update_ ABSL_GUARDED_BY(mutex_);
   bool said_draining_ ABSL_GUARDED_BY(mutex_) = false;
