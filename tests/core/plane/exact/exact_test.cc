@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/scene/scene.h"
-#include "oracle.h"
+#include "tests/core/plane/exact/oracle.h"
 
 namespace flatlight {
 namespace {

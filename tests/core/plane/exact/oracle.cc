@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "oracle.h"
+#include "tests/core/plane/exact/oracle.h"
 
 #include <quadmath.h>
 
