@@ -8,10 +8,10 @@ namespace flatlight {
 // Half a unit in the last place of 1: the rounding of one operation on numbers near 1.
 inline constexpr double kUnitRoundoff = 0x1p-53;
 
-// How far apart two curves may be and still touch, for rays, in a scene around the origin; Scene::touch_distance() scales
-// it with the coordinates that the author had to round. Rounding places a curve's end up to 2 roundoffs from where its
-// neighbour passes. Smaller: light leaks through T-junctions. Larger: gaps of this width close (a keyhole of 1e-7
-// narrows by 2e-8 of itself).
+// How far apart two curves may be and still touch, for rays, in a scene around the origin; Scene::touch_distance()
+// scales it with the coordinates that the author had to round. Rounding places a curve's end up to 2 roundoffs from
+// where its neighbour passes. Smaller: light leaks through T-junctions. Larger: gaps of this width close (a keyhole of
+// 1e-7 narrows by 2e-8 of itself).
 inline constexpr double kTouchDistance = 8 * kUnitRoundoff;
 
 // Curves overlap if one runs within this distance of another for longer than this. Larger than kTouchDistance because

@@ -43,12 +43,14 @@ Example:
   job=$(flatlight submit scene.json --samples 100000 --quiet)
   flatlight watch $job && flatlight fetch $job -o result.json)";
 
-inline constexpr char kWatchHelp[] = R"(Waits until the job has ended, and takes up a broken connection again by itself. Ctrl-C stops watching; the job goes on.
+inline constexpr char kWatchHelp[] =
+    R"(Waits until the job has ended, and takes up a broken connection again by itself. Ctrl-C stops watching; the job goes on.
 JOB is jobs/UUID, a UUID, or the beginning of one.)";
 
 inline constexpr char kJobHelp[] = R"(JOB is jobs/UUID, a UUID, or the beginning of one.)";
 
-inline constexpr char kFetchHelp[] = R"(JOB is jobs/UUID, a UUID, or the beginning of one. It must have ended; of a cancelled one there is what was done.
+inline constexpr char kFetchHelp[] =
+    R"(JOB is jobs/UUID, a UUID, or the beginning of one. It must have ended; of a cancelled one there is what was done.
 See `flatlight render --help` for the forms of OUT.)";
 
 inline constexpr char kScenesHelp[] = R"(Examples:
@@ -57,7 +59,8 @@ inline constexpr char kScenesHelp[] = R"(Examples:
 
 inline constexpr char kExplainHelp[] = R"(Renders nothing. Names in the list of skips are for --no-skip.)";
 
-inline constexpr char kCompareHelp[] = R"(A and B are results in JSON form with the same probes at the same points; B is the reference. Printed for irradiance and, if
+inline constexpr char kCompareHelp[] =
+    R"(A and B are results in JSON form with the same probes at the same points; B is the reference. Printed for irradiance and, if
 both have them, derivatives of each probe:
   rms, max    of the difference A - B          relative rms    rms over the rms of B
   z           difference / its standard error: mean z (0 without bias), mean z^2 (1 if the errors are honest)
