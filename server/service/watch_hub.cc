@@ -127,7 +127,8 @@ void WatchHub::Work() {
       if (timetable_.empty()) {
         wake_.wait(lock);
       } else {
-        wake_.wait_until(lock, timetable_.begin()->first);
+        const Time next = timetable_.begin()->first;  // A copy: the entry may go while this waits.
+        wake_.wait_until(lock, next);
       }
       continue;
     }
