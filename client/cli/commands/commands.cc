@@ -7,11 +7,11 @@
 namespace flatlight {
 
 CommandResult RunCommand(const CommandLine& line, Interruption& interruption) {
-  static const std::map<std::string, CommandResult (*)(const CommandLine&, Interruption&)> commands = {
+  static const std::map<std::string, CommandResult (*)(const CommandLine&, Interruption&)> kCommands = {
       {"render", Render},   {"submit", Submit},     {"watch", Watch},           {"jobs", Jobs},
       {"show", Show},       {"fetch", Fetch},       {"cancel", Cancel},         {"scenes", Scenes},
       {"explain", Explain}, {"validate", Validate}, {"compare", CompareResults}};
-  return commands.at(line.command)(line, interruption);
+  return kCommands.at(line.command)(line, interruption);
 }
 
 }  // namespace flatlight

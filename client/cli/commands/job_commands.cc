@@ -26,7 +26,7 @@ absl::StatusOr<std::unique_ptr<Session>> OpenServer(const CommandLine& line, Int
 
 // Prints the answer, and ends with kDone.
 CommandResult Answer(const std::string& text) {
-  if (const absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
+  if (absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
   return ExitCode::kDone;
 }
 
@@ -35,7 +35,7 @@ CommandResult Answer(const std::string& text) {
 CommandResult Submit(const CommandLine& line, Interruption& interruption) {
   const auto scene = ParseSceneArgument(line.scene);
   if (!scene.ok()) return scene.status();
-  if (const absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
+  if (absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
   const auto session = OpenServer(line, interruption);
   if (!session.ok()) return session.status();
   Connection& connection = (*session)->connection();
@@ -64,8 +64,8 @@ CommandResult Watch(const CommandLine& line, Interruption& interruption) {
     return InterruptedError("stopped watching; the job goes on (flatlight cancel " + *name + " stops it)");
   if (!job.ok()) return job.status();
   if (line.json)
-    if (const absl::Status printed = PrintBytes(ToJson(*job)); !printed.ok()) return printed;
-  if (const absl::Status success = CheckSuccess(*job); !success.ok()) return success;
+    if (absl::Status printed = PrintBytes(ToJson(*job)); !printed.ok()) return printed;
+  if (absl::Status success = CheckSuccess(*job); !success.ok()) return success;
   const std::string reason = job->end_reason() == 0 ? "" : " (" + OptionName(job->end_reason()) + ")";
   console.Say(job->name() + " " + OptionName(job->state()) + reason + '\n');
   return ExitCode::kDone;
@@ -105,7 +105,7 @@ CommandResult Fetch(const CommandLine& line, Interruption& interruption) {
   const auto result = FetchResult((*session)->connection(), *name);
   if (!result.ok()) return result.status();
   Console console = ConsoleFor(*outputs, line.quiet);
-  if (const absl::Status delivered = DeliverResult(*result, *outputs, console); !delivered.ok()) return delivered;
+  if (absl::Status delivered = DeliverResult(*result, *outputs, console); !delivered.ok()) return delivered;
   return ExitCode::kDone;
 }
 

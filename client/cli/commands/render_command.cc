@@ -34,7 +34,7 @@ absl::StatusOr<v1::RenderResult> WaitForResult(Session& session, const v1::Job& 
   console.EndProgress();
   if (session.connection().interruption().Requested()) return CancelAfterSignal(session, job);
   if (!ended.ok()) return ended.status();
-  if (const absl::Status success = CheckSuccess(*ended); !success.ok()) return success;
+  if (absl::Status success = CheckSuccess(*ended); !success.ok()) return success;
   return FetchResult(session.connection(), job.name());
 }
 
@@ -45,7 +45,7 @@ CommandResult Render(const CommandLine& line, Interruption& interruption) {
   if (!outputs.ok()) return outputs.status();
   const auto scene = ParseSceneArgument(line.scene);
   if (!scene.ok()) return scene.status();
-  if (const absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
+  if (absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
   Console console = ConsoleFor(*outputs, line.quiet);
 
   const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
@@ -60,7 +60,7 @@ CommandResult Render(const CommandLine& line, Interruption& interruption) {
 
   const auto result = WaitForResult(**session, *job, console);
   if (!result.ok()) return (*session)->Explain(result.status());
-  if (const absl::Status delivered = DeliverResult(*result, *outputs, console); !delivered.ok()) return delivered;
+  if (absl::Status delivered = DeliverResult(*result, *outputs, console); !delivered.ok()) return delivered;
   return ExitCode::kDone;
 }
 

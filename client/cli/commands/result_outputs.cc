@@ -29,7 +29,7 @@ Console ConsoleFor(const std::vector<Output>& outputs, bool quiet) {
 
 absl::Status DeliverResult(const v1::RenderResult& result, const std::vector<Output>& outputs, Console& console) {
   console.Say(ResultText(result));
-  if (const absl::Status written = WriteOutputs(result, outputs); !written.ok()) return written;
+  if (absl::Status written = WriteOutputs(result, outputs); !written.ok()) return written;
   console.Say(WrittenText(outputs));
   return absl::OkStatus();
 }

@@ -16,7 +16,7 @@ namespace flatlight {
 namespace {
 
 CommandResult Answer(const std::string& text) {
-  if (const absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
+  if (absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
   return ExitCode::kDone;
 }
 
@@ -91,7 +91,7 @@ CommandResult Scenes(const CommandLine& line, Interruption& interruption) {
 CommandResult Explain(const CommandLine& line, Interruption& interruption) {
   const auto scene = ParseSceneArgument(line.scene);
   if (!scene.ok()) return scene.status();
-  if (const absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
+  if (absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
   const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
   if (!session.ok()) return session.status();
   Connection& connection = (*session)->connection();
@@ -110,7 +110,7 @@ CommandResult Explain(const CommandLine& line, Interruption& interruption) {
 CommandResult Validate(const CommandLine& line, Interruption& interruption) {
   const auto scene = ParseSceneArgument(line.scene);
   if (!scene.ok()) return scene.status();
-  if (const absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
+  if (absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
   const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
   if (!session.ok()) return session.status();
   Connection& connection = (*session)->connection();
@@ -119,7 +119,7 @@ CommandResult Validate(const CommandLine& line, Interruption& interruption) {
   const auto response = ValidateScene(connection, *source);
   if (!response.ok()) return ExplainSceneError(connection, *scene, *source, (*session)->Explain(response.status()));
   if (line.json)
-    if (const absl::Status printed = PrintBytes(ToJson(*response)); !printed.ok()) return printed;
+    if (absl::Status printed = PrintBytes(ToJson(*response)); !printed.ok()) return printed;
   if (!response->diagnostics().empty()) return UsageError(DiagnosticLines(*scene, *response));
   return line.json || line.quiet ? ExitCode::kDone : Answer(TraitsText(*scene, *response));
 }

@@ -33,7 +33,7 @@ absl::StatusOr<std::unique_ptr<Session>> Session::Open(const CommandLine& line, 
     auto server = PrivateServer::Start();
     if (!server.ok()) return server.status();
     session->server_ = *std::move(server);
-    if (const absl::Status ready = session->server_->WaitUntilReady(interruption); !ready.ok()) return ready;
+    if (absl::Status ready = session->server_->WaitUntilReady(interruption); !ready.ok()) return ready;
     text = session->server_->address();
     token = session->server_->token();
   }

@@ -39,7 +39,7 @@ Connection::Connection(ServerAddress address, std::string token, Interruption& i
 absl::StatusOr<std::unique_ptr<Connection>> Connection::Open(const ServerAddress& address, const std::string& token,
                                                              Interruption& interruption) {
   std::unique_ptr<Connection> connection(new Connection(address, token, interruption));
-  if (const absl::Status status = connection->ReadCapabilities(); !status.ok()) return status;
+  if (absl::Status status = connection->ReadCapabilities(); !status.ok()) return status;
   return connection;
 }
 

@@ -102,7 +102,7 @@ absl::StatusOr<std::unique_ptr<PrivateServer>> PrivateServer::Start() {
   const std::string folder = MakeFolder();
   if (folder.empty()) return Failed(std::string("no temporary folder: ") + std::strerror(errno));
   std::unique_ptr<PrivateServer> server(new PrivateServer(folder, token));
-  if (const absl::Status status = server->Spawn(program); !status.ok()) return status;
+  if (absl::Status status = server->Spawn(program); !status.ok()) return status;
   return server;
 }
 
@@ -146,7 +146,7 @@ absl::Status PrivateServer::Spawn(const std::string& program) {
 absl::Status PrivateServer::WaitUntilReady(Interruption& interruption) {
   const auto deadline = steady_clock::now() + kStartPatience;
   while (!Connects(socket_)) {
-    if (const absl::Status status = CheckAlive(); !status.ok()) return status;
+    if (absl::Status status = CheckAlive(); !status.ok()) return status;
     if (steady_clock::now() > deadline)
       return Failed("it did not listen within " + std::to_string(kStartPatience.count()) + " s");
     if (!interruption.Sleep(milliseconds(1))) return absl::CancelledError("interrupted");

@@ -7,7 +7,7 @@ namespace flatlight {
 
 const std::vector<ResultColumn>& AllResultColumns() {
   using Probe = v1::ProbeResult;
-  static const std::vector<ResultColumn> columns = {
+  static const std::vector<ResultColumn> kColumns = {
       {"x", [](const Probe& p) -> const DoubleArray& { return p.positions(); }, 2, 0},
       {"y", [](const Probe& p) -> const DoubleArray& { return p.positions(); }, 2, 1},
       {"nx", [](const Probe& p) -> const DoubleArray& { return p.normals(); }, 2, 0},
@@ -20,7 +20,7 @@ const std::vector<ResultColumn>& AllResultColumns() {
       {"hessian", [](const Probe& p) -> const DoubleArray& { return p.hessian(); }, 0, 0},
       {"hessianError", [](const Probe& p) -> const DoubleArray& { return p.hessian_error(); }, 0, 0},
       {"samples", [](const Probe& p) -> const DoubleArray& { return p.samples(); }, 1, 0}};
-  return columns;
+  return kColumns;
 }
 
 std::vector<ResultColumn> ResultColumnsOf(const v1::RenderResult& result) {

@@ -41,7 +41,7 @@ std::string FindProbeDefect(const v1::ProbeResult& probe, const std::string& pat
 
 std::string FindResultDefect(const v1::RenderResult& result) {
   for (int i = 0; i < result.probes_size(); ++i) {
-    const std::string defect = FindProbeDefect(result.probes(i), "probes[" + std::to_string(i) + "]");
+    std::string defect = FindProbeDefect(result.probes(i), "probes[" + std::to_string(i) + "]");
     if (!defect.empty()) return defect;
   }
   const v1::Statistics& statistics = result.statistics();

@@ -46,7 +46,7 @@ class Watch {
       if (status.error_code() == grpc::StatusCode::NOT_FOUND && heard_anything_)
         return JobError("the server no longer knows " + request_.name() + "; it was restarted, or the job deleted");
       if (!MayComeBack(status)) return connection_.Explain(status);
-      if (const absl::Status wait = WaitForNextTry(status); !wait.ok()) return wait;
+      if (absl::Status wait = WaitForNextTry(status); !wait.ok()) return wait;
     }
   }
 
@@ -86,7 +86,7 @@ class Watch {
 
   absl::Status WaitForNextTry(const grpc::Status& status) {
     if (options_.check_server)
-      if (const absl::Status alive = options_.check_server(); !alive.ok()) return alive;
+      if (absl::Status alive = options_.check_server(); !alive.ok()) return alive;
     if (steady_clock::now() - last_message_ > options_.patience)
       return absl::UnavailableError("lost the server at " + connection_.address() + " for more than " +
                                     FormatSeconds(std::chrono::duration<double>(options_.patience).count()) + ": " +

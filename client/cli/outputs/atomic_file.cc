@@ -58,7 +58,7 @@ absl::Status CheckWritable(const std::string& path) {
 }
 
 absl::StatusOr<std::unique_ptr<AtomicFile>> AtomicFile::Create(const std::string& path) {
-  if (const absl::Status status = CheckWritable(path); !status.ok()) return status;
+  if (absl::Status status = CheckWritable(path); !status.ok()) return status;
   const std::string target = Resolved(path);
   std::string temporary = FolderOf(target) + "/.flatlight-XXXXXX";
   const int fd = mkostemp(temporary.data(), O_CLOEXEC);
@@ -97,7 +97,7 @@ absl::Status AtomicFile::Commit() {
 absl::Status WriteFileAtomically(const std::string& path, std::string_view bytes) {
   auto file = AtomicFile::Create(path);
   if (!file.ok()) return file.status();
-  if (const absl::Status status = (*file)->Write(bytes); !status.ok()) return status;
+  if (absl::Status status = (*file)->Write(bytes); !status.ok()) return status;
   return (*file)->Commit();
 }
 

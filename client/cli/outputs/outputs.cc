@@ -106,7 +106,7 @@ absl::StatusOr<std::vector<Output>> PlanOutputs(const std::vector<std::string>& 
   }
   for (const Output& output : outputs) {
     if (output.path == "-") continue;
-    if (const absl::Status status = CheckOutput(output); !status.ok()) return status;
+    if (absl::Status status = CheckOutput(output); !status.ok()) return status;
   }
   return outputs;
 }

@@ -56,9 +56,10 @@ absl::StatusOr<std::string> PictureBytes(const std::string& ending, const std::v
   // Never unloaded: libraries below it register handlers that run at exit.
   void* module = dlopen(ModulePath().c_str(), RTLD_NOW | RTLD_LOCAL);
   if (module == nullptr) return absl::FailedPreconditionError(dlerror());
-  const auto write = reinterpret_cast<FlatlightWritePictures>(dlsym(module, "flatlight_write_pictures"));
+  const auto write = reinterpret_cast<FlatlightWritePicturesFunction>(dlsym(module, "FlatlightWritePictures"));
   if (write == nullptr) return absl::FailedPreconditionError(dlerror());
   std::vector<FlatlightPicture> rows;
+  rows.reserve(pictures.size());
   for (const Picture& picture : pictures)
     rows.push_back({picture.name.c_str(), picture.width, picture.height, picture.channels, picture.pixels.data()});
   std::string bytes;

@@ -47,9 +47,9 @@ std::string Write(const std::string& ending, const FlatlightPicture* pictures, i
 
 }  // namespace
 
-int flatlight_write_pictures(const char* ending, const FlatlightPicture* pictures, int count,
-                             void (*take)(void* context, const unsigned char* bytes, std::size_t size), void* context,
-                             char* error, std::size_t error_size) {
+int FlatlightWritePictures(const char* ending, const FlatlightPicture* pictures, int count,
+                           void (*take)(void* context, const unsigned char* bytes, std::size_t size), void* context,
+                           char* error, std::size_t error_size) {
   try {
     Bytes bytes;
     const std::string reason = Write(ending, pictures, count, bytes);

@@ -19,10 +19,10 @@ struct FlatlightPicture {
 
 // Makes a file in the format that `ending` (".exr") names, with one part for each picture (`count` is 1 if the format
 // has no parts), in memory: its bytes go to `take`, once. Returns 0, or another number with a reason in `error`.
-int flatlight_write_pictures(const char* ending, const FlatlightPicture* pictures, int count,
-                             void (*take)(void* context, const unsigned char* bytes, std::size_t size), void* context,
-                             char* error, std::size_t error_size);
-using FlatlightWritePictures = decltype(&flatlight_write_pictures);
+int FlatlightWritePictures(const char* ending, const FlatlightPicture* pictures, int count,
+                           void (*take)(void* context, const unsigned char* bytes, std::size_t size), void* context,
+                           char* error, std::size_t error_size);
+using FlatlightWritePicturesFunction = decltype(&FlatlightWritePictures);
 }
 
 #endif  // FLATLIGHT_CLIENT_CLI_PICTURE_PICTURE_MODULE_H_

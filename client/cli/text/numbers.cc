@@ -53,7 +53,7 @@ std::string FormatSeconds(double seconds) {
   if (seconds < 9.95) return Plain(seconds, 2) + " s";
   if (seconds < 59.5) return Print("%.*f s", 0, seconds);
   if (seconds > 1e9) return FormatValue(seconds, 2) + " s";
-  const auto whole = static_cast<long long>(seconds + 0.5);
+  const auto whole = std::llround(seconds);
   std::array<char, 64> text{};
   if (whole < 3600) {
     std::snprintf(text.data(), text.size(), "%lld:%02lld", whole / 60, whole % 60);
