@@ -28,7 +28,8 @@ MeanEstimate EstimateMean(std::span<const double> values, double step) {
   for (const double x : values) squares += (x - estimate.mean) * (x - estimate.mean);
   estimate.variance = squares / ((n - 1) * n);
   estimate.degrees_of_freedom = n - 1;
-  estimate.unresolved = step / (n + 1);
+  // One value on the other side of the edge would make the sum of squares (1 - 1/n) step^2.
+  if (squares < 0.25 * step * step) estimate.unresolved = step * std::sqrt(2 / ((n + 2) * (n + 3)));
   return estimate;
 }
 

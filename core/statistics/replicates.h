@@ -26,9 +26,9 @@ struct MeanEstimate {
 };
 
 // `step` is what one sample of a value, had it fallen to the other side of an edge, would change that value. Stratified
-// samples place an edge to within one sample, so values may all agree and all be wrong by part of a step. If k of n
-// values lie on the other side, Laplace's rule puts the share of such values at (k + 1) / (n + 2) and never at 0: to
-// agree among n values leaves an error of about step / (n + 1).
+// samples place an edge to within one sample, so values may all agree and all be wrong by part of a step. Let a share d
+// of such values lie on the other side, all d alike likely: if none of n does, the mean square of d is
+// 2/((n + 2)(n + 3)) (Laplace's rule of succession), and that is added. If some do, their spread tells.
 MeanEstimate EstimateMean(std::span<const double> values, double step);
 
 // The plain average of two independent estimates. Its degrees of freedom are those of Welch (1947).
