@@ -32,7 +32,7 @@ class CMakeRefusalTest(unittest.TestCase):
                 (folder / "CMakeLists.txt").write_text(f"flatlight_library(core_{name} HEADERS {name}.h {arguments})\n")
                 lines.append(f"add_subdirectory(core/{name})")
             pathlib.Path(project, "CMakeLists.txt").write_text("\n".join(lines), encoding="utf-8")
-            command = [CMAKE, "-S", project, "-B", f"{project}/build"]
+            command = [CMAKE, "-G", "Ninja", "-S", project, "-B", f"{project}/build"]
             return subprocess.run(command, capture_output=True, text=True, check=False)
 
     def compiles(self, dependencies):
