@@ -47,16 +47,16 @@ void CheckRanges(const Settings& settings, Diagnostics& diagnostics) {
   }
 }
 
-// Settings that the method would ignore, and scenes that it cannot do. `by_default`: the caller named no method.
-void CheckMethod(const Scene& scene, const Settings& settings, bool by_default, Diagnostics& diagnostics) {
+// Settings that the method would ignore, and scenes that it cannot do.
+void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   if (settings.method == Method::kExact) {
-    const std::string exact =
-        by_default ? "exact, the method for a scene with direct light only (to sample it, ask for path-tracing)"
-                   : "exact";
-    if (settings.samples.has_value()) diagnostics.Add("settings.samples", "does not apply to " + exact);
-    if (settings.seed.has_value()) diagnostics.Add("settings.seed", "does not apply to " + exact);
-    if (settings.target_error.has_value()) diagnostics.Add("settings.targetError", "does not apply to " + exact);
-    if (settings.time_limit.has_value()) diagnostics.Add("settings.timeLimit", "does not apply to " + exact);
+    if (settings.samples.has_value())
+      diagnostics.Add("settings.samples", "does not apply to exact, which draws no samples");
+    if (settings.seed.has_value()) diagnostics.Add("settings.seed", "does not apply to exact, which draws no samples");
+    if (settings.target_error.has_value())
+      diagnostics.Add("settings.targetError", "does not apply to exact, which draws no samples");
+    if (settings.time_limit.has_value())
+      diagnostics.Add("settings.timeLimit", "does not apply to exact, which draws no samples");
     if (!DirectLightOnly(scene, settings)) {
       const std::string cure = "set max bounces to 0, or use path-tracing";
       if (settings.max_bounces.has_value()) {
@@ -165,10 +165,11 @@ std::optional<Plan> MakePlan(const Scene& scene, const Settings& settings, Diagn
   Plan plan;
   plan.settings = settings;
   if (!settings.method.has_value()) {
-    plan.settings.method = DirectLightOnly(scene, settings) ? Method::kExact : Method::kPathTracing;
+    const bool sampling = settings.samples || settings.seed || settings.target_error || settings.time_limit;
+    plan.settings.method = DirectLightOnly(scene, settings) && !sampling ? Method::kExact : Method::kPathTracing;
   }
   CheckRanges(settings, diagnostics);
-  CheckMethod(scene, plan.settings, !settings.method.has_value(), diagnostics);
+  CheckMethod(scene, plan.settings, diagnostics);
   if (diagnostics.count() != before) return std::nullopt;
   FillMethodDefaults(plan.settings);
   plan.skips = DecideSkips(scene, plan.settings);

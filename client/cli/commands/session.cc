@@ -30,7 +30,7 @@ absl::StatusOr<std::unique_ptr<Session>> Session::Open(const CommandLine& line, 
       return UsageError(
           "`flatlight " + line.command +
           "` needs a server, as jobs outlive the command: give --server HOST:PORT or set FLATLIGHT_SERVER");
-    auto server = PrivateServer::Start();
+    auto server = PrivateServer::Start(line.settings.threads());
     if (!server.ok()) return server.status();
     session->server_ = *std::move(server);
     if (absl::Status ready = session->server_->WaitUntilReady(interruption); !ready.ok()) return ready;

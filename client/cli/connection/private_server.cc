@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -31,6 +32,7 @@ using std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kStartPatience{10};
 constexpr std::chrono::duration<int, std::milli> kStopPatience{4000};  // The server's own is 3 s.
+constexpr std::uint32_t kMostThreads = 1024;                           // That flatlightd accepts.
 constexpr const char* kTokenVariable = "FLATLIGHT_TOKEN";
 
 absl::Status Failed(const std::string& what) {
@@ -91,7 +93,7 @@ std::string LastLines(const std::string& path) {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<PrivateServer>> PrivateServer::Start() {
+absl::StatusOr<std::unique_ptr<PrivateServer>> PrivateServer::Start(std::uint32_t threads) {
   std::error_code error;
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
   const std::string program = (self.parent_path() / "flatlightd").string();
@@ -102,14 +104,14 @@ absl::StatusOr<std::unique_ptr<PrivateServer>> PrivateServer::Start() {
   const std::string folder = MakeFolder();
   if (folder.empty()) return Failed(std::string("no temporary folder: ") + std::strerror(errno));
   std::unique_ptr<PrivateServer> server(new PrivateServer(folder, token));
-  if (absl::Status status = server->Spawn(program); !status.ok()) return status;
+  if (absl::Status status = server->Spawn(program, threads); !status.ok()) return status;
   return server;
 }
 
 PrivateServer::PrivateServer(std::string folder, std::string token)
     : folder_(std::move(folder)), socket_(folder_ + "/socket"), log_(folder_ + "/log"), token_(std::move(token)) {}
 
-absl::Status PrivateServer::Spawn(const std::string& program) {
+absl::Status PrivateServer::Spawn(const std::string& program, std::uint32_t threads) {
   std::array<int, 2> pipe{};
   if (pipe2(pipe.data(), O_CLOEXEC) != 0) return Failed(std::strerror(errno));
   lifeline_ = pipe[1];
@@ -132,6 +134,7 @@ absl::Status PrivateServer::Spawn(const std::string& program) {
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
 
   std::vector<std::string> arguments = {program, "--listen", address(), "--exit-with-parent"};
+  if (threads > 0) arguments.insert(arguments.end(), {"--threads", std::to_string(std::min(threads, kMostThreads))});
   std::vector<std::string> environment = Environment(token_);
   const int error = posix_spawn(&child_, program.c_str(), &files, &attributes, Pointers(arguments).data(),
                                 Pointers(environment).data());

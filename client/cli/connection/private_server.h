@@ -5,6 +5,7 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -17,8 +18,9 @@ namespace flatlight {
 // that only the two know. The server ends when this object or this process does, however that ends: it watches a pipe.
 class PrivateServer {
  public:
-  // Returns while the server is starting; WaitUntilReady says when it can be called.
-  static absl::StatusOr<std::unique_ptr<PrivateServer>> Start();
+  // `threads` are for rendering; 0: as many as there are processors. Returns while the server is starting;
+  // WaitUntilReady says when it can be called.
+  static absl::StatusOr<std::unique_ptr<PrivateServer>> Start(std::uint32_t threads);
   // Ends the server and removes the folder.
   ~PrivateServer();
   PrivateServer(const PrivateServer&) = delete;
@@ -34,7 +36,7 @@ class PrivateServer {
 
  private:
   PrivateServer(std::string folder, std::string token);
-  absl::Status Spawn(const std::string& program);
+  absl::Status Spawn(const std::string& program, std::uint32_t threads);
   void Stop();
 
   std::string folder_;

@@ -113,6 +113,16 @@ class EndToEnd(unittest.TestCase):
         self.run_cli("render", "gallery:unit-light", "--method", "exact", "-o", "other.json")
         self.assertIn("cannot be compared", self.run_cli("compare", "other.json", "paths.json", status=2).stderr)
 
+    def test_any_number_of_threads_gives_the_same_bits(self):
+        results = []
+        for threads in (1, 2, 7):
+            run = self.run_cli("render", "gallery:cornell", "--samples", "32", "--threads", str(threads), "-o", "-")
+            result = json.loads(run.stdout)
+            self.assertEqual(result["plan"]["settings"]["threads"], threads)
+            results.append(result["probes"])
+        self.assertEqual(results[0], results[1])
+        self.assertEqual(results[0], results[2])
+
     def test_progress_on_a_terminal_is_one_line_that_fits(self):
         main, side = pty.openpty()
         command = [FLATLIGHT, "render", "gallery:furnace", "--time-limit", "1"]

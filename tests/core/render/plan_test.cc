@@ -100,14 +100,24 @@ TEST(PlanTest, ExactRefusesWhatItWouldIgnore) {
   settings.seed = 1;
   settings.target_error = 0.1;
   settings.time_limit = 1;
-  EXPECT_THAT(
-      Mistakes(*Black(), settings),
-      ElementsAre("settings.samples: does not apply to exact", "settings.seed: does not apply to exact",
-                  "settings.targetError: does not apply to exact", "settings.timeLimit: does not apply to exact"));
-  // Chosen by default, the message says how to get sampling.
-  Settings by_default;
-  by_default.samples = 64;
-  EXPECT_THAT(Mistakes(*Black(), by_default), ElementsAre(HasSubstr("ask for path-tracing")));
+  EXPECT_THAT(Mistakes(*Black(), settings),
+              ElementsAre(HasSubstr("settings.samples: does not apply to exact"), HasSubstr("settings.seed: does not"),
+                          HasSubstr("settings.targetError: does not"), HasSubstr("settings.timeLimit: does not")));
+}
+
+// A setting about samples asks for sampling, also where exact would be the default.
+TEST(PlanTest, SettingsAboutSamplesChooseSampling) {
+  const auto method = [](auto set) {
+    Settings settings;
+    set(settings);
+    Diagnostics diagnostics;
+    return MakePlan(*Black(), settings, diagnostics)->settings.method;
+  };
+  EXPECT_EQ(method([](Settings&) {}), Method::kExact);
+  EXPECT_EQ(method([](Settings& s) { s.samples = 64; }), Method::kPathTracing);
+  EXPECT_EQ(method([](Settings& s) { s.seed = 1; }), Method::kPathTracing);
+  EXPECT_EQ(method([](Settings& s) { s.target_error = 0.1; }), Method::kPathTracing);
+  EXPECT_EQ(method([](Settings& s) { s.time_limit = 1; }), Method::kPathTracing);
 }
 
 TEST(PlanTest, ExactRefusesReflections) {
