@@ -11,6 +11,7 @@
 #include "server/app/options.h"
 #include "server/app/shutdown_signals.h"
 #include "server/app/token.h"
+#include "server/service/build_version.h"
 #include "server/service/server.h"
 
 namespace flatlight {

@@ -13,6 +13,7 @@
 #include "grpcpp/server_builder.h"
 #include "server/scheduler/task_queue.h"
 #include "server/service/backend.h"
+#include "server/service/build_version.h"
 #include "server/service/listen_address.h"
 #include "server/service/render_service.h"
 #include "server/service/scene_service.h"
@@ -141,7 +142,5 @@ void Server::Drain(std::chrono::milliseconds grace) {
   parts.grpc->Wait();
   parts.grpc.reset();
 }
-
-std::string BuildVersion() { return FLATLIGHT_VERSION; }
 
 }  // namespace flatlight

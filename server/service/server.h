@@ -41,9 +41,6 @@ class Server {
   std::unique_ptr<Parts> parts_;
 };
 
-// The version of this build, as results state it.
-std::string BuildVersion();
-
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_SERVER_SERVICE_SERVER_H_
