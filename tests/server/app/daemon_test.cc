@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "grpcpp/create_channel.h"
+#include "server/service/build_version.h"
 #include "tests/support/loopback/loopback_server.h"
 
 namespace flatlight {

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "grpcpp/impl/codegen/client_unary_call.h"
+#include "server/service/build_version.h"
 #include "server/store/sha256.h"
 #include "tests/support/loopback/loopback_server.h"
 #include "tests/support/rendering/fake_rendering.h"
