@@ -290,6 +290,10 @@ void SceneBuilder::Summarise() {
   for (const Element& element : scene.elements_) traits.has_arcs |= element.kind == Element::Kind::kArc;
   // Rounding of receivers, and of the points of arcs, comes on top of the shift's.
   scene.coordinate_error_ += (traits.has_arcs ? 6 : 2) * kUnitRoundoff;
+  // A point of an arc of large radius is a small difference of large numbers.
+  double largest_radius = 0;
+  for (const Element& element : scene.elements_) largest_radius = std::max(largest_radius, element.radius);
+  if (largest_radius > 1) scene.coordinate_error_ += 4 * kUnitRoundoff * largest_radius;
   for (const Probe& probe : scene.probes_) traits.probe_points += probe.receivers.size();
   scene.world_hash_ = HashWorld(description_);
   scene.probe_hash_ = HashProbes(description_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/plane/exact/exact.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/math/tolerances.h"
@@ -49,6 +50,9 @@ ExactValue ExactSolver::Evaluate(const Receiver& receiver) {
       }
     }
   }
+  // Rounding must not make light negative; the bound covers the difference.
+  for (int channel = 0; channel < options_.channels; ++channel)
+    value.irradiance[channel] = std::max(0.0, value.irradiance[channel]);
   for (int channel = options_.channels; channel < kMaxChannels; ++channel) {
     for (Spectrum* spectrum : {&value.irradiance, &value.gradient, &value.hessian, &value.irradiance_error,
                                &value.gradient_error, &value.hessian_error}) {

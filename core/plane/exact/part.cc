@@ -45,29 +45,46 @@ class PartBuilder {
   // The receiver lies on the arc's circle: seen only from inside.
   void BuildOwnCircle() {
     if (Dot(receiver_.normal, element_.center - receiver_.position) < 0) return;
-    const Edge a = VertexEdge(receiver_, element_.a);
-    const Edge b = VertexEdge(receiver_, element_.b);
-    if (id_ != receiver_.element) {
-      Add(Part::Kind::kConcave, a, b);
-      return;
-    }
-    // The element runs on to the horizon on both sides of the receiver; along it, a lies behind. A free point's tangent
-    // may run against the element.
+    // Along the element, a lies behind. A free point's tangent may run against the element.
     const Vector2 along =
         element_.Orientation() * Left(element_.radial_a + (receiver_.position - element_.a) / element_.radius);
     const double ahead = Dot(along, receiver_.tangent) >= 0 ? 1 : -1;
-    Add(Part::Kind::kConcave, a, HorizonEdge(-ahead));
-    Add(Part::Kind::kConcave, HorizonEdge(ahead), b);
+    const bool at_a = IsOwnPlace(element_.a), at_b = IsOwnPlace(element_.b);
+    if (id_ == receiver_.element) {
+      // It runs on to the horizon on both sides of the receiver.
+      if (!at_a) AddAbove(Part::Kind::kConcave, OwnVertex(element_.a), HorizonEdge(-ahead));
+      if (!at_b) AddAbove(Part::Kind::kConcave, HorizonEdge(ahead), OwnVertex(element_.b));
+    } else {
+      AddAbove(Part::Kind::kConcave, at_a ? HorizonEdge(ahead) : OwnVertex(element_.a),
+               at_b ? HorizonEdge(-ahead) : OwnVertex(element_.b));
+    }
+  }
+
+  bool IsOwnPlace(Point2 point) const { return Length(point - receiver_.position) <= 4 * scene_.coordinate_error(); }
+
+  // A point of the receiver's own circle: above the horizon by |d|^2/(2 r), however near it is.
+  Edge OwnVertex(Point2 point) const {
+    Edge edge = VertexEdge(receiver_, point);
+    edge.normal = LengthSquared(point - receiver_.position) / (2 * element_.radius);
+    edge.c = edge.normal * edge.q;
+    edge.key = edge.tangent / (std::abs(edge.tangent) + edge.normal);
+    return edge;
   }
 
   void BuildArc() {
-    const CircleView view(element_, receiver_.position);
+    CircleView view(element_, receiver_.position);
+    if (std::abs(view.f) < 4 * scene_.touch_distance() &&
+        Length(receiver_.position - element_.a) <= 2 * element_.length) {
+      // The circle passes through the receiver, where neither side is right: what counts is a little farther on.
+      receiver_.position = receiver_.position + kOnward * receiver_.tangent;
+      view = CircleView(element_, receiver_.position);
+    }
     const double orientation = element_.Orientation();
-    const Edge a = VertexEdge(receiver_, element_.a);
-    const Edge b = VertexEdge(receiver_, element_.b);
     // Which side each end shows. Arcs that share an end share these bits, so that no silhouette falls between them.
-    const bool convex_a = Dot(receiver_.position - element_.a, element_.radial_a) > 0;
-    const bool convex_b = Dot(receiver_.position - element_.b, element_.radial_b) > 0;
+    const bool convex_a = ShowsConvexSide(element_.a, element_.radial_a);
+    const bool convex_b = ShowsConvexSide(element_.b, element_.radial_b);
+    const Edge a = EndEdge(view, element_.a, element_.radial_a, -orientation);
+    const Edge b = EndEdge(view, element_.b, element_.radial_b, orientation);
     const bool middle_inside =
         orientation * Cross(element_.radial_a, view.v) > 0 && orientation * Cross(view.v, element_.radial_b) > 0;
     if (convex_a && convex_b) {
@@ -98,6 +115,40 @@ class PartBuilder {
     }
   }
 
+  bool ShowsConvexSide(Point2 end, Vector2 radial) const {
+    const double height = Dot(receiver_.position - end, radial);
+    if (std::abs(height) > 2 * scene_.coordinate_error()) return height > 0;
+    // On the tangent at the end: what counts is where the receiver moves.
+    return Dot(receiver_.tangent, radial) > 0;
+  }
+
+  // The edge of an end. Where the circle goes on beyond it and the touching point is so near that their directions
+  // agree, light ends at the touching point, which moves in another way.
+  Edge EndEdge(const CircleView& view, Point2 end, Vector2 radial, double side) const {
+    const Edge vertex = VertexEdge(receiver_, end);
+    if (!(view.f > 0) || !GoesOnBeyond(radial)) return vertex;
+    const Edge silhouette = Silhouette(view, side);
+    const double near = 8 * kUnitRoundoff + 4 * scene_.coordinate_error() * vertex.q;
+    const bool same =
+        std::abs(silhouette.tangent * vertex.normal - silhouette.normal * vertex.tangent) * silhouette.q * vertex.q <=
+            near &&
+        std::abs(silhouette.q - vertex.q) <= 1e-6 * vertex.q;
+    return same ? silhouette : vertex;
+  }
+
+  // Whether another arc of the same circle meets this one at the end in that direction.
+  bool GoesOnBeyond(Vector2 radial) const {
+    const Curve& curve = scene_.curve(element_.curve);
+    for (std::uint32_t e = curve.first_element; e < curve.first_element + curve.element_count; ++e) {
+      const Element& other = scene_.elements()[e];
+      if (static_cast<ElementId>(e) != id_ && other.carrier == element_.carrier &&
+          (other.radial_a == radial || other.radial_b == radial)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   // The touching point counter-clockwise (side +1) or clockwise (-1) of the circle's nearest point.
   Edge Silhouette(const CircleView& view, double side) const {
     const double root = std::sqrt(std::max(0.0, 2 * view.f / element_.radius));
@@ -109,8 +160,8 @@ class PartBuilder {
 
   bool Above(const Edge& edge) const {
     if (edge.kind == Edge::Kind::kHorizon) return true;
+    if (edge.kind == Edge::Kind::kVertex && IsOwnPlace(edge.point)) return false;
     const double reach = std::abs(edge.tangent) + std::abs(edge.normal);
-    if (reach < 4 * scene_.coordinate_error()) return false;  // The receiver's own place.
     const double uncertain = 2 * scene_.coordinate_error() + 4 * kUnitRoundoff * reach;
     if (std::abs(edge.normal) > uncertain) return edge.normal > 0;
     // On the horizon: what counts is where it goes as the receiver moves on.
@@ -123,6 +174,10 @@ class PartBuilder {
     if (!above_first && !above_last) return;
     if (!above_first) first = Horizon(last, first);
     if (!above_last) last = Horizon(first, last);
+    AddAbove(kind, first, last);
+  }
+
+  void AddAbove(Part::Kind kind, const Edge& first, const Edge& last) {
     if (first.kind == Edge::Kind::kHorizon && last.kind == Edge::Kind::kHorizon && first.s == last.s) return;
     parts_.part[parts_.count++] = {kind, id_, first, last};
   }
@@ -136,10 +191,13 @@ class PartBuilder {
     return HorizonEdge(crossing > 4 * scene_.coordinate_error() ? 1 : -1);
   }
 
+  // How far the receiver is moved on from a circle that passes through it.
+  static constexpr double kOnward = 0x1p-40;
+
   const Scene& scene_;
   const ElementId id_;
   const Element& element_;
-  const Receiver& receiver_;
+  Receiver receiver_;
   Parts parts_;
 };
 

@@ -41,9 +41,7 @@ const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, c
   breaks_.clear();
   for (std::uint32_t p = 0; p < parts.size(); ++p) {
     for (const Edge* edge : {&parts[p].first, &parts[p].last}) {
-      const double uncertain =
-          edge->kind == Edge::Kind::kHorizon ? 0 : 2 * scene_.coordinate_error() * edge->q + 4 * kUnitRoundoff;
-      breaks_.push_back({edge, p, uncertain});
+      breaks_.push_back({edge, p, Uncertainty(*edge)});
     }
   }
   SortBreaks(receiver.curvature);
@@ -67,10 +65,7 @@ const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, c
     } else if (active_.size() == 1) {
       Emit(*here.edge, static_cast<std::int32_t>(active_[0]));
     } else if (next.edge->key - here.edge->key <= here.uncertain + next.uncertain) {
-      // Coinciding edges come in the order of their distance, and a piece seen edge-on is as far away between two of
-      // them as they are.
-      const double edge_on = 0.5 * (here.edge->Distance() + next.edge->Distance());
-      Emit(*here.edge, Nearest(0.5 * (here.edge->key + next.edge->key), edge_on));
+      ResolveCoinciding(*here.edge, *next.edge);
     } else {
       FindArcCrossings(here.edge->key, next.edge->key);
       Edge from = *here.edge;
@@ -121,21 +116,42 @@ double Sweep::DistanceOf(std::uint32_t part, double key) const {
   return DistanceAlong(scene_.element(p.element), p, *receiver_, direction.tangent, direction.normal);
 }
 
-std::int32_t Sweep::Nearest(double key, std::optional<double> edge_on) const {
+bool Sweep::IsEdgeOn(const Part& part) const {
+  return part.first.kind != Edge::Kind::kHorizon && part.last.kind != Edge::Kind::kHorizon &&
+         std::abs(part.first.key - part.last.key) <= Uncertainty(part.first) + Uncertainty(part.last);
+}
+
+std::int32_t Sweep::Nearest(double key, EdgeOn edge_on) const {
   std::int32_t nearest = VisibleInterval::kNothing;
   double best = std::numeric_limits<double>::infinity();
   for (const std::uint32_t p : active_) {
-    const Part& part = (*parts_)[p];
-    const bool is_edge_on =
-        edge_on && part.first.kind != Edge::Kind::kHorizon && part.last.kind != Edge::Kind::kHorizon &&
-        std::abs(part.first.key - part.last.key) <= Uncertainty(part.first) + Uncertainty(part.last);
-    const double distance = is_edge_on ? *edge_on : DistanceOf(p, key);
+    if (edge_on == EdgeOn::kLeaveOut && IsEdgeOn((*parts_)[p])) continue;
+    const double distance = DistanceOf(p, key);
     if (nearest == VisibleInterval::kNothing || distance < best * (1 - kTie) ||
         (distance < best * (1 + kTie) && InFront(p, static_cast<std::uint32_t>(nearest), key, distance))) {
       best = distance, nearest = static_cast<std::int32_t>(p);
     }
   }
   return nearest;
+}
+
+void Sweep::ResolveCoinciding(const Edge& from, const Edge& to) {
+  const double key = 0.5 * (from.key + to.key);
+  const std::int32_t other = Nearest(key, EdgeOn::kLeaveOut);
+  std::int32_t edge_on = VisibleInterval::kNothing;
+  for (const std::uint32_t p : active_)
+    if (IsEdgeOn((*parts_)[p])) edge_on = static_cast<std::int32_t>(p);
+  if (edge_on == VisibleInterval::kNothing) return Emit(from, other);
+  // Coinciding edges come in the order of their distance, and between two of them a piece seen edge-on recedes from the
+  // one's distance to the other's. What lies between these distances hides the rest of it.
+  const double distance = other == VisibleInterval::kNothing ? std::numeric_limits<double>::infinity()
+                                                             : DistanceOf(static_cast<std::uint32_t>(other), key);
+  if (distance <= from.Distance() * (1 + kTie)) return Emit(from, other);
+  Emit(from, edge_on);
+  if (distance >= to.Distance() * (1 - kTie)) return;
+  const UnitDirection direction(key);
+  const Vector2 along = direction.tangent * receiver_->tangent + direction.normal * receiver_->normal;
+  Emit(VertexEdge(*receiver_, receiver_->position + distance * along), other);
 }
 
 bool Sweep::InFront(std::uint32_t p, std::uint32_t other, double key, double distance) const {
@@ -146,14 +162,20 @@ bool Sweep::InFront(std::uint32_t p, std::uint32_t other, double key, double dis
     return start.kind != Edge::Kind::kHorizon && std::abs(start.key - key) < kAside &&
            std::abs(start.Distance() - distance) < 1e3 * kAside * distance;
   };
-  const double aside = starts_here(p) || starts_here(other) ? kAside : -kAside;
+  const auto width = [&](std::uint32_t index) {
+    const Part& part = (*parts_)[index];
+    return std::abs(part.first.key - part.last.key);
+  };
+  // Never beyond the parts themselves.
+  const double step = std::min({kAside, 0.25 * width(p), 0.25 * width(other)});
+  const double aside = starts_here(p) || starts_here(other) ? step : -step;
   const double direction = std::clamp(key + aside, -1.0, 1.0);
   const double r1 = DistanceOf(p, direction), r2 = DistanceOf(other, direction);
   return r1 != r2 ? r1 < r2 : (*parts_)[p].element < (*parts_)[other].element;
 }
 
 void Sweep::Resolve(const Edge& from, const Edge& to, int depth) {
-  const std::int32_t nearest = Nearest(0.5 * (from.key + to.key), std::nullopt);
+  const std::int32_t nearest = Nearest(0.5 * (from.key + to.key), EdgeOn::kCount);
   if (active_.size() > 1 && depth < kMaxDepth) {
     // Straight parts cross once at most: another one is in front somewhere only if it is at an end.
     for (const double key : {from.key, to.key}) {
@@ -204,7 +226,7 @@ void Sweep::AddCrossings(std::uint32_t first, std::uint32_t second, double low, 
 
 void Sweep::Emit(const Edge& from, std::int32_t part) {
   VisibleInterval interval;
-  interval.begin = from;
+  interval.begin = BreakBetween(from, part);
   interval.part = part;
   if (part != VisibleInterval::kNothing) {
     // An element that runs counter-clockwise around the receiver has it on its left; theta runs clockwise.
@@ -213,6 +235,31 @@ void Sweep::Emit(const Edge& from, std::int32_t part) {
     interval.side = counter_clockwise ? Side::kFront : Side::kBack;
   }
   visible_.push_back(interval);
+}
+
+Edge Sweep::BreakBetween(const Edge& from, std::int32_t part) const {
+  const std::int32_t before = visible_.empty() ? VisibleInterval::kNothing : visible_.back().part;
+  if (before == part || before == VisibleInterval::kNothing || part == VisibleInterval::kNothing) return from;
+  // One of the two ends here, as a rule. If not, they cross here, and something hidden behind them ends in the same
+  // direction.
+  const auto ends_here = [&](std::int32_t index) {
+    const Part& p = (*parts_)[static_cast<std::size_t>(index)];
+    const auto near = [&](const Edge& edge) {
+      return std::abs(edge.key - from.key) <= 2 * (Uncertainty(edge) + Uncertainty(from)) &&
+             std::abs(edge.q - from.q) <= 1e-9 * from.q;
+    };
+    return near(p.first) || near(p.last);
+  };
+  if (from.kind == Edge::Kind::kHorizon || ends_here(before) || ends_here(part)) return from;
+  const Element& e = scene_.element((*parts_)[static_cast<std::size_t>(before)].element);
+  const Element& f = scene_.element((*parts_)[static_cast<std::size_t>(part)].element);
+  if (e.carrier == f.carrier) return from;
+  const ElementCrossings points = CrossElements(e, f, scene_.touch_distance());
+  for (int i = 0; i < points.count; ++i) {
+    const Edge edge = VertexEdge(*receiver_, points.point[i]);
+    if (edge.normal > 0 && std::abs(edge.key - from.key) <= 4 * (Uncertainty(edge) + Uncertainty(from))) return edge;
+  }
+  return from;
 }
 
 }  // namespace flatlight

@@ -3,7 +3,6 @@
 #define FLATLIGHT_CORE_PLANE_EXACT_SWEEP_H_
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "core/plane/exact/part.h"
@@ -40,13 +39,19 @@ class Sweep {
 
   void SortBreaks(double curvature);
   void Resolve(const Edge& from, const Edge& to, int depth);
-  // Of the active parts, in the direction of a key. `edge_on`: the distance of parts that are seen edge-on.
-  std::int32_t Nearest(double key, std::optional<double> edge_on) const;
+  enum class EdgeOn { kCount, kLeaveOut };
+  // Of the active parts, in the direction of a key.
+  std::int32_t Nearest(double key, EdgeOn edge_on) const;
+  bool IsEdgeOn(const Part& part) const;
+  // Between two edges in one direction.
+  void ResolveCoinciding(const Edge& from, const Edge& to);
   bool InFront(std::uint32_t p, std::uint32_t other, double key, double distance) const;
   double DistanceOf(std::uint32_t part, double key) const;
   // How far an edge's key may be off.
   double Uncertainty(const Edge& edge) const;
   void Emit(const Edge& from, std::int32_t part);
+  // What parts the last visible part from the next: `from`, unless they cross in its direction.
+  Edge BreakBetween(const Edge& from, std::int32_t part) const;
   // Directions strictly between two edges where an active arc crosses another active part.
   void FindArcCrossings(double low, double high);
   void AddCrossings(std::uint32_t first, std::uint32_t second, double low, double high,
