@@ -22,6 +22,10 @@ inline constexpr double kOverlapDistance = 4 * kTouchDistance;
 // points to. The error of irradiance is of this order, relative to the nearest vertex's distance.
 inline constexpr double kLiftDistance = 0x1p-42;
 
+// Where another curve passes through a receiver, light is that just beyond it, toward increasing arc length: rays start
+// so many touch distances farther on. The error is of this order, relative to the distance of the nearest vertex.
+inline constexpr double kOnwardTouches = 1024;
+
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_CORE_MATH_TOLERANCES_H_

@@ -48,9 +48,13 @@ Crossings CrossArc(const Element& arc, Point2 origin, Vector2 direction, double 
   const Vector2 q = origin - arc.a;
   const double bend = 1 / arc.radius;
   const double a = bend * LengthSquared(direction);
-  const double b = Dot(direction, arc.radial_a + bend * q);
+  const Vector2 v = arc.radial_a + bend * q;  // From the centre, in radii.
+  const double b = Dot(direction, v);
   const double c = Dot(q, arc.radial_a) + 0.5 * bend * LengthSquared(q);
-  const double discriminant = b * b - 2 * a * c;
+  // From far away by the line's offset from the centre, in which nothing cancels.
+  const double length = Length(direction);
+  const double offset = Cross(direction, v);
+  const double discriminant = 2 * bend * c > 1 ? (length - offset) * (length + offset) : b * b - 2 * a * c;
   if (discriminant < 0) return {};
   const double root = -b - std::copysign(std::sqrt(discriminant), b);
   Crossings crossings;

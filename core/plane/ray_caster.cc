@@ -98,6 +98,19 @@ std::optional<Hit> RayCaster::ClosestHit(const SurfacePoint& from, Vector2 direc
   return hit;
 }
 
+bool RayCaster::Touches(const SurfacePoint& point) const {
+  const std::uint32_t carrier = point.element == ElementId::kNone ? kNoCarrier : scene_->element(point.element).carrier;
+  const double end = 0;
+  bool touches = false;
+  // The ray of length 0 visits the boxes that hold the point.
+  Walk(bvh_, Ray(point.position, {1, 1}), end, [&](std::uint32_t index) {
+    const Element& element = scene_->elements()[index];
+    touches = element.carrier != carrier && DistanceTo(element, point.position) <= scene_->touch_distance();
+    return touches;
+  });
+  return touches;
+}
+
 bool RayCaster::Visible(const SurfacePoint& from, const SurfacePoint& to) const {
   const std::uint32_t from_carrier =
       from.element == ElementId::kNone ? kNoCarrier : scene_->element(from.element).carrier;

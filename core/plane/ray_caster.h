@@ -37,6 +37,9 @@ class RayCaster {
   // True if nothing lies between two points, their own places on their own curves aside.
   bool Visible(const SurfacePoint& from, const SurfacePoint& to) const;
 
+  // Whether another line or circle than the point's own passes through it.
+  bool Touches(const SurfacePoint& point) const;
+
   const Scene& scene() const { return *scene_; }
   const Bvh& bvh() const { return bvh_; }
 

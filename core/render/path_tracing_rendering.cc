@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/math/tolerances.h"
 #include "core/plane/path_tracing/path_tracer.h"
+#include "core/plane/ray_caster.h"
 #include "core/render/probe_points.h"
 #include "core/render/skips.h"
 
@@ -17,14 +19,22 @@ class PathSampler final : public PointSampler {
  public:
   PathSampler(std::shared_ptr<const Scene> scene, const PathTracingOptions& options, std::uint32_t seed)
       : scene_(std::move(scene)),
-        points_(PointsOfProbes(*scene_)),
-        tracer_(std::make_shared<const RayCaster>(scene_), options),
-        seed_(seed) {}
+        caster_(std::make_shared<const RayCaster>(scene_)),
+        tracer_(caster_, options),
+        seed_(seed) {
+    for (const Receiver* point : PointsOfProbes(*scene_)) {
+      points_.push_back(*point);
+      // On another curve as well: what counts is what lies beyond, toward increasing arc length.
+      if (caster_->Touches({point->position, point->element})) {
+        points_.back().position = point->position + kOnwardTouches * scene_->touch_distance() * point->tangent;
+      }
+    }
+  }
 
   std::size_t channels() const override { return static_cast<std::size_t>(tracer_.channels()); }
 
   void Steps(std::size_t point, std::span<double> steps) const override {
-    const Spectrum step = tracer_.DirectStep(*points_[point]);
+    const Spectrum step = tracer_.DirectStep(points_[point]);
     for (std::size_t c = 0; c < steps.size(); ++c) steps[c] = step.value[c];
   }
 
@@ -34,14 +44,15 @@ class PathSampler final : public PointSampler {
     for (std::size_t replicate = 0; replicate < kReplicates; ++replicate) {
       value.fill(0);
       const SampleStream stream(seed_, point, replicate);
-      tracer_.AddPath(*points_[point], stream, block, cancellation, std::span(value).first(channels()), rays);
+      tracer_.AddPath(points_[point], stream, block, cancellation, std::span(value).first(channels()), rays);
       for (std::size_t c = 0; c < channels(); ++c) sums[c * kReplicates + replicate] += value[c];
     }
   }
 
  private:
   std::shared_ptr<const Scene> scene_;
-  std::vector<const Receiver*> points_;
+  std::shared_ptr<const RayCaster> caster_;
+  std::vector<Receiver> points_;
   PathTracer tracer_;
   std::uint32_t seed_;
 };

@@ -160,6 +160,7 @@ double ProgressiveSampling::WorstError(std::size_t point, const ProbeMeans& mean
   for (std::size_t c = 0; c < channels(); ++c) {
     const double floor = kDarkest * means[probe_of_point_[point] * channels() + c];
     const MeanEstimate& estimate = value.estimates[c];
+    if (floor == 0 && estimate.mean == 0 && value.samples >= CrossedHalves::kSamplesBeforeDarkness) continue;
     worst = std::max(worst, RelativeError(estimate.mean, estimate.StandardError(), floor));
   }
   return worst;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/element_frame.h"
 
+#include <cmath>
+
 #include "core/math/trig.h"
 
 namespace flatlight {
@@ -32,6 +34,20 @@ Vector2 FrontNormal(const Element& element, Point2 on_element) {
   // The gradient of the circle's equation written about a: exact as the radius grows.
   const Vector2 outward = element.radial_a + (on_element - element.a) / element.radius;
   return -element.Orientation() * Normalized(outward);
+}
+
+double DistanceTo(const Element& element, Point2 p) {
+  const Vector2 along = element.b - element.a;
+  const Vector2 from_a = p - element.a;
+  const double t = Dot(from_a, along) / LengthSquared(along);
+  // Beyond an end (an arc of at most a quarter lies between the perpendiculars on its chord's ends).
+  if (t <= 0) return Length(from_a);
+  if (t >= 1) return Length(p - element.b);
+  const double side = Cross(along, from_a) / Length(along);
+  if (element.kind == Element::Kind::kSegment) return std::abs(side);
+  if (side * element.Orientation() > 0) return side * element.Orientation();  // On the chord's empty side.
+  // The circle's equation about a, q.u + |q|^2/(2 r), is the distance to first order.
+  return std::abs(Dot(from_a, element.radial_a) + LengthSquared(from_a) / (2 * element.radius));
 }
 
 }  // namespace flatlight

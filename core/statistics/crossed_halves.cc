@@ -7,8 +7,8 @@ namespace flatlight {
 namespace {
 
 bool GoodEnough(const CrossedHalves::HalfEstimate& estimates, double samples, const CrossedHalves::Target& target) {
-  const bool dark = std::all_of(estimates.begin(), estimates.end(),
-                                [](const MeanEstimate& e) { return e.mean == 0 && e.StandardError() == 0; });
+  bool dark = true;
+  for (std::size_t c = 0; c < estimates.size(); ++c) dark = dark && estimates[c].mean == 0 && target.floor[c] == 0;
   if (dark) return samples >= CrossedHalves::kSamplesBeforeDarkness;
   for (std::size_t c = 0; c < estimates.size(); ++c) {
     const double error = estimates[c].StandardError();

@@ -25,8 +25,8 @@ class CrossedHalves {
   };
   using HalfEstimate = std::vector<MeanEstimate>;  // One a channel.
 
-  // A half without a single bright sample says nothing about how rare those are: it doesn't decide before this number
-  // of samples of the whole point.
+  // Where a whole probe is dark so far, no error is small beside it, and nothing is known of how rare bright samples
+  // are: the point is given up for dark after this number of samples.
   static constexpr double kSamplesBeforeDarkness = 4096;
 
   // Offers both halves after `samples` samples of the whole point. targets[h] judges half h, and may depend on data of

@@ -222,7 +222,10 @@ double DistanceAlong(const Element& element, const Part& part, const Receiver& r
   }
   const CircleView view(element, receiver.position);
   const double b = Dot(direction, view.v);
-  const double root = std::sqrt(std::max(0.0, b * b - 2 * view.f / element.radius));
+  // Half the chord, in radii; from far away by its offset from the centre, in which nothing cancels.
+  const double power = 2 * view.f / element.radius;
+  const double offset = Cross(direction, view.v);
+  const double root = std::sqrt(std::max(0.0, power > 1 ? (1 - offset) * (1 + offset) : b * b - power));
   if (part.kind == Part::Kind::kConvex) return 2 * view.f / (root - b);
   return b > 0 ? -2 * view.f / (b + root) : (root - b) * element.radius;
 }

@@ -158,8 +158,11 @@ bool Sweep::InFront(std::uint32_t p, std::uint32_t other, double key, double dis
   // Parts that meet in this direction: the one that is nearer a little aside, on the side where both are.
   const auto starts_here = [&](std::uint32_t index) {
     const Part& part = (*parts_)[index];
-    const Edge& start = first_rank_[index] < last_rank_[index] ? part.first : part.last;
+    const bool forward = first_rank_[index] < last_rank_[index];
+    const Edge& start = forward ? part.first : part.last;
+    const Edge& end = forward ? part.last : part.first;
     return start.kind != Edge::Kind::kHorizon && std::abs(start.key - key) < kAside &&
+           std::abs(start.key - key) < std::abs(end.key - key) &&
            std::abs(start.Distance() - distance) < 1e3 * kAside * distance;
   };
   const auto width = [&](std::uint32_t index) {

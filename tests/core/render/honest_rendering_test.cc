@@ -55,6 +55,28 @@ TEST(HonestRenderingTest, ChannelsAreIndependent) {
   for (const HonestErrors& channel : errors) EXPECT_TRUE(channel.Unbiased()) << channel.MeanZ();
 }
 
+// A point on a corner of a dark room, and one at the foot of a wall: light must not come in through the wall that
+// touches the point.
+TEST(HonestRenderingTest, PointsOnOtherCurvesAreOnTheSideOfIncreasingArcLength) {
+  const auto room = SceneMaker()
+                        .Segment("left", {0, 1}, {0, 0}, {.reflectance = {0}})
+                        .Segment("floor", {0, 0}, {1, 0}, {.reflectance = {0}})
+                        .Segment("right", {1, 0}, {1, 1}, {.reflectance = {0}})
+                        .Segment("roof", {1, 1}, {0, 1}, {.reflectance = {0}})
+                        .Segment("lamp", {-1, -3}, {-1, 3}, {.reflectance = {0}, .radiance = {1}, .two_sided = true})
+                        .PointProbe({0, 0}, {0, 1})
+                        .Build();
+  EXPECT_EQ(Render(room, Sampled(256, 0)).field->probes[0].irradiance[0], 0);
+  const auto wall = SceneMaker()
+                        .Segment("floor", {-2, 0}, {2, 0}, {.reflectance = {0}})
+                        .Segment("lamp", {1, 2}, {-1, 2}, {.reflectance = {0}, .radiance = {1}})
+                        .Segment("wall", {0, 0}, {0, 1}, {.reflectance = {0}})
+                        .Probe("floor", 1)
+                        .Build();
+  const ProbeField field = Render(wall, Sampled(1024, 0)).field->probes[0];
+  EXPECT_NEAR(field.irradiance[0], 1 / std::sqrt(5.0), 4 * field.standard_error[0]);
+}
+
 // The same as StatedErrorsTellTheTruth for points that stop by themselves, each when it meets the target.
 TEST(HonestRenderingTest, TargetErrorIsMetWithoutBias) {
   const auto scene = SquareRoom({.reflectance = {0.6}, .radiance = {1}}, 4).Build();

@@ -286,6 +286,71 @@ TEST(ExactTest, GridScenesAreOneSidedAtEveryEvent) {
   }
 }
 
+SceneDescription WithFreePoint(SceneDescription scene, Point2 position) {
+  ProbeDescription probe;
+  probe.name = "p";
+  probe.points.push_back({position, {0, 1}});
+  scene.probes.push_back(probe);
+  return scene;
+}
+
+TEST(ExactTest, AWallSeenEdgeOnThatCrossesTheLampHidesASliver) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, SegmentDescription{{2, 1.5}, {-2, 1.5}}, 1);
+  AddCurve(scene, SegmentDescription{{0, 1}, {0, 2}});
+  scene = WithFreePoint(scene, {0, 0});
+  ExpectOneSided(scene, "edge-on");
+  EXPECT_NEAR(Solve(*Build(scene), 0)[0].gradient, -1.0 / 3, 1e-14);
+}
+
+TEST(ExactTest, AHiddenEndBehindACrossingIsNotItsBreak) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, SegmentDescription{{1, 1}, {-1, 1}}, 1, true);
+  AddCurve(scene, SegmentDescription{{0.5, 0.5}, {0.5, 1.5}});
+  AddCurve(scene, SegmentDescription{{1, 2}, {2, 2}});  // Its end lies beyond the crossing at (0.5, 1), seen from here.
+  ExpectOneSided(WithFreePoint(scene, {0, 0}), "hidden end");
+}
+
+TEST(ExactTest, TheTangentAtAnArcsEndIsAnEventAndAtAJointIsNot) {
+  SceneDescription half = EmptyScene();
+  AddCurve(half, ArcDescription{{-0.5, 1}, 0.5, 0, kPi}, 1, true);  // Ends at (0, 1), upright.
+  ExpectOneSided(WithFreePoint(half, {0, 0}), "end");
+  // A full circle is cut into arcs, one joint straight above: nothing happens there.
+  SceneDescription disc = EmptyScene();
+  AddCurve(disc, ArcDescription{{-0.5, 1}, 0.5, 0, -2 * kPi}, 1);
+  for (const double x : {0.0, 1e-9, -1e-9, 1e-8, -1e-8}) {
+    const WorldValue here = Solve(*Build(WithFreePoint(disc, {x, 0})), 0)[0];
+    const WorldValue aside = Solve(*Build(WithFreePoint(disc, {x + 1e-3, 0})), 0)[0];
+    EXPECT_NEAR(here.gradient, aside.gradient, 5e-3) << x;
+    EXPECT_NEAR(here.hessian, aside.hessian, 2e-2) << x;
+  }
+}
+
+TEST(ExactTest, TinyDiscsAreRound) {
+  for (const double radius : {1e-3, 1e-6, 1e-8, 1e-10}) {
+    SceneDescription scene = EmptyScene();
+    AddCurve(scene, SegmentDescription{{-2, 0}, {2, 0}});
+    AddCurve(scene, ArcDescription{{0, 1}, radius, 0, -2 * kPi}, 1 / radius);
+    AddProbe(scene, 0, 2);  // At x = -1 and 1: E = 2 L R cos/D = 1.
+    for (const WorldValue& value : Solve(*Build(scene), 0)) {
+      EXPECT_NEAR(value.irradiance, 1, value.irradiance_error) << radius;
+      EXPECT_NEAR(value.irradiance, 1, 1e-14 / radius) << radius;
+    }
+  }
+}
+
+TEST(ExactTest, ACurveThroughTheReceiverStandsOnItsLeft) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, SegmentDescription{{-2, 0}, {2, 0}});
+  AddCurve(scene, SegmentDescription{{0, 0}, {0, 1}});
+  AddCurve(scene, ArcDescription{{0, 0}, 9, 0, 2 * kPi}, 1);
+  AddProbe(scene, 0, 1);
+  EXPECT_NEAR(Solve(*Build(scene), 0)[0].irradiance, 1, 1e-14);
+  // A dome that ends there with an upright tangent instead: its near part covers less the nearer one looks, to a limit.
+  scene.curves[1].shape = ArcDescription{{-1, 0}, 1, 0, kPi};
+  EXPECT_NEAR(Solve(*Build(scene), 0)[0].irradiance, 1, 1e-5);
+}
+
 // Curves may cross, be receivers, emitters and occluders at once.
 TEST(ExactTest, RandomScenesAgreeWithTheOracle) {
   Agreement agreement;
