@@ -19,7 +19,7 @@ absl::StatusOr<std::string> ReadTokenFile(const std::string& path) {
 
 std::string TakeTokenFromEnvironment() {
   const char* value = std::getenv("FLATLIGHT_TOKEN");
-  const std::string token = value == nullptr ? "" : value;
+  std::string token = value == nullptr ? "" : value;
   unsetenv("FLATLIGHT_TOKEN");
   return token;
 }

@@ -72,7 +72,7 @@ absl::Status Connection::ReadCapabilities() {
   const auto read = [this](grpc::ClientContext* context) {
     return server_->GetCapabilities(context, v1::GetCapabilitiesRequest(), &capabilities_);
   };
-  const absl::Status status = Call(
+  absl::Status status = Call(
       [&read](grpc::ClientContext* context) {
         context->set_wait_for_ready(true);
         context->set_deadline(std::chrono::system_clock::now() + kPatience);
