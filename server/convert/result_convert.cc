@@ -22,9 +22,9 @@ void AddSlice(const std::vector<double>& values, std::size_t first, std::size_t 
 
 }  // namespace
 
-void FillProbeGeometry(const Scene& scene, std::size_t probe, std::size_t first, std::size_t count,
+void FillProbeGeometry(const SceneOutline& scene, std::size_t probe, std::size_t first, std::size_t count,
                        v1::ProbeResult& out) {
-  const Probe& source = scene.probes()[probe];
+  const Probe& source = scene.probes[probe];
   FLATLIGHT_DCHECK(first + count <= source.receivers.size());
   out.set_name(source.name);
   const bool on_curve = source.curve != CurveId::kNone;
@@ -39,7 +39,7 @@ void FillProbeGeometry(const Scene& scene, std::size_t probe, std::size_t first,
     out.add_positions(position.y);
     out.add_normals(receiver.normal.x);
     out.add_normals(receiver.normal.y);
-    if (on_curve) out.add_arc_length(scene.frame().scale * receiver.arc_length);
+    if (on_curve) out.add_arc_length(scene.frame.scale * receiver.arc_length);
   }
 }
 
@@ -59,16 +59,16 @@ void FillProbeValues(const Field& field, int channels, std::size_t probe, std::s
   AddSlice(source.samples, first, count, 1, *out.mutable_samples());
 }
 
-v1::RenderResult ResultToProto(const Scene& scene, const Field& field) {
+v1::RenderResult ResultToProto(const SceneOutline& scene, const Field& field) {
   v1::RenderResult result;
-  result.set_scene(scene.name());
-  result.set_world_hash(scene.world_hash());
-  result.set_probe_hash(scene.probe_hash());
-  for (std::size_t probe = 0; probe < scene.probes().size(); ++probe) {
-    const std::size_t count = scene.probes()[probe].receivers.size();
+  result.set_scene(scene.name);
+  result.set_world_hash(scene.world_hash);
+  result.set_probe_hash(scene.probe_hash);
+  for (std::size_t probe = 0; probe < scene.probes.size(); ++probe) {
+    const std::size_t count = scene.probes[probe].receivers.size();
     v1::ProbeResult& out = *result.add_probes();
     FillProbeGeometry(scene, probe, 0, count, out);
-    FillProbeValues(field, scene.channels(), probe, 0, count, out);
+    FillProbeValues(field, scene.channels, probe, 0, count, out);
   }
   result.mutable_statistics()->set_rays(field.rays);
   if (field.error_bound) result.mutable_statistics()->set_error_bound(*field.error_bound);

@@ -28,11 +28,11 @@ bool EqualValues(const ProbeField& a, const ProbeField& b, std::size_t points, s
 
 }  // namespace
 
-FieldVersions StampVersions(const Scene& scene, const Field* before, const FieldVersions& before_versions,
+FieldVersions StampVersions(const SceneOutline& scene, const Field* before, const FieldVersions& before_versions,
                             const Field& after, std::uint64_t sequence) {
   FieldVersions versions;
-  for (std::size_t probe = 0; probe < scene.probes().size(); ++probe) {
-    const std::size_t points = scene.probes()[probe].receivers.size();
+  for (std::size_t probe = 0; probe < scene.probes.size(); ++probe) {
+    const std::size_t points = scene.probes[probe].receivers.size();
     std::vector<std::uint64_t>& changed = versions.changed.emplace_back();
     for (std::size_t first = 0; first < points; first += FieldVersions::kPoints) {
       const std::size_t last = std::min(points, first + FieldVersions::kPoints);

@@ -12,7 +12,7 @@ namespace flatlight {
 
 // The versions of `after`, which state `sequence` brings: `before_versions` where its bits equal those of `before`
 // (null: there was no field), `sequence` elsewhere.
-FieldVersions StampVersions(const Scene& scene, const Field* before, const FieldVersions& before_versions,
+FieldVersions StampVersions(const SceneOutline& scene, const Field* before, const FieldVersions& before_versions,
                             const Field& after, std::uint64_t sequence);
 
 }  // namespace flatlight

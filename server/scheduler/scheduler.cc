@@ -39,6 +39,7 @@ struct Scheduler::Run {
   enum class Stage : std::uint8_t { kWaiting, kPreparing, kReady, kSlicing, kEnded };
 
   std::shared_ptr<const JobSpec> spec;
+  std::shared_ptr<const Scene> scene;  // Until it is prepared.
   Cancellation cancellation;
   Stage stage = Stage::kWaiting;         // Guarded by the scheduler's mutex, as is `state`.
   JobState state;                        // Published last.
@@ -63,9 +64,11 @@ Scheduler::Scheduler(const SchedulerOptions& options, JobStore& store, Executor&
 
 Scheduler::~Scheduler() { Stop(); }
 
-absl::StatusOr<JobRecord> Scheduler::Submit(std::shared_ptr<const JobSpec> spec, const std::optional<RequestKey>& key) {
+absl::StatusOr<JobRecord> Scheduler::Submit(std::shared_ptr<const JobSpec> spec, std::shared_ptr<const Scene> scene,
+                                            const std::optional<RequestKey>& key) {
   auto run = std::make_shared<Run>();
   run->spec = std::move(spec);
+  run->scene = std::move(scene);
   absl::StatusOr<JobRecord> job;
   {
     const std::lock_guard lock(mutex_);
@@ -92,9 +95,11 @@ void Scheduler::Admit() {
 }
 
 void Scheduler::Prepare(const RunPtr& run) {
+  std::shared_ptr<const Scene> scene;
   {
     const std::lock_guard lock(mutex_);
     if (run->stage == Run::Stage::kEnded) return;
+    scene = std::move(run->scene);
     run->started = clock_.Now();
     run->state.start_time = std::chrono::system_clock::now();
     run->state.phase = JobPhase::kRunning;
@@ -105,7 +110,7 @@ void Scheduler::Prepare(const RunPtr& run) {
   std::unique_ptr<Rendering> rendering;
   absl::Status failure;
   try {
-    rendering = start_(run->spec->scene, run->spec->plan);
+    rendering = start_(std::move(scene), run->spec->plan);
   } catch (...) {
     failure = WhatFailed();
   }
@@ -229,6 +234,8 @@ void Scheduler::End(Run& run, JobPhase phase) {
   if (run.stage == Run::Stage::kPreparing || run.stage == Run::Stage::kReady || run.stage == Run::Stage::kSlicing)
     --running_;
   run.stage = Run::Stage::kEnded;
+  // A large scene takes a while to free: not under the lock.
+  if (run.scene != nullptr) starters_->Post(0, [scene = std::move(run.scene)] {});
   run.state.phase = phase;
   run.state.end_time = std::chrono::system_clock::now();
   Publish(run);

@@ -47,8 +47,10 @@ class Scheduler {
   // As Stop.
   ~Scheduler();
 
-  // Accepts a job and returns at once. If `key` has made a job before, returns that one.
-  absl::StatusOr<JobRecord> Submit(std::shared_ptr<const JobSpec> spec, const std::optional<RequestKey>& key);
+  // Accepts a job and returns at once. The scene is let go when the job has ended. If `key` has made a job before,
+  // returns that one.
+  absl::StatusOr<JobRecord> Submit(std::shared_ptr<const JobSpec> spec, std::shared_ptr<const Scene> scene,
+                                   const std::optional<RequestKey>& key);
   // Stops the work and returns the ended job, after at most one shard's time. An ended job stays as it is.
   absl::StatusOr<JobRecord> Cancel(const JobId& id);
   // Cancels and removes.

@@ -54,8 +54,8 @@ std::string JobKey(const JobSpec& spec, const std::string& build) {
   settings.clear_threads();
   settings.clear_no_skip();
   Sha256 hash;
-  hash.Add(spec.scene->world_hash());
-  hash.Add(spec.scene->probe_hash());
+  hash.Add(spec.scene->world_hash);
+  hash.Add(spec.scene->probe_hash);
   hash.Add(settings.SerializeAsString());
   hash.Add(build);
   return hash.Finish();
@@ -67,7 +67,7 @@ v1::Job JobToProto(const JobSpec& spec, const JobState& state, JobView view) {
   v1::Job job;
   job.set_name(spec.id.Name());
   if (view == JobView::kWhole) {
-    job.set_scene(spec.scene->name());
+    job.set_scene(spec.scene->name);
     *job.mutable_settings() = SettingsToProto(spec.settings);
     *job.mutable_plan() = PlanToProto(spec.plan);
   }

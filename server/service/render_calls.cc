@@ -79,11 +79,11 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
   auto spec = std::make_shared<JobSpec>();
   spec->id = JobId::Random();
   spec->owner = caller.name;
-  spec->scene = std::move(planned->scene);
+  spec->scene = std::make_shared<SceneOutline>(*planned->scene);
   spec->settings = std::move(planned->settings);
   spec->plan = std::move(planned->plan);
   spec->create_time = std::chrono::system_clock::now();
-  const auto job = backend.scheduler.Submit(std::move(spec), *key);
+  const auto job = backend.scheduler.Submit(std::move(spec), std::move(planned->scene), *key);
   if (!job.ok()) return job.status();
   return WholeJob(*job);
 }

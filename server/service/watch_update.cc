@@ -18,8 +18,8 @@ constexpr std::size_t kHeadBytes = 16u << 10;
 constexpr std::size_t kFrameBytes = 128;
 
 // Upper bound of a point's bytes in a message: 7 arrays of values, 5 numbers of geometry.
-std::size_t BytesPerPoint(const Scene& scene, bool with_values, bool with_geometry) {
-  const auto channels = static_cast<std::size_t>(scene.channels());
+std::size_t BytesPerPoint(const SceneOutline& scene, bool with_values, bool with_geometry) {
+  const auto channels = static_cast<std::size_t>(scene.channels);
   return sizeof(double) * ((with_values ? 6 * channels + 1 : 0) + (with_geometry ? 5 : 0));
 }
 
@@ -44,15 +44,15 @@ WatchUpdate::Known WatchUpdate::Canonical(const JobState& state, Known known) {
 }
 
 void WatchUpdate::PlanMessages() {
-  const Scene& scene = *job_.spec->scene;
+  const SceneOutline& scene = *job_.spec->scene;
   const JobState& state = *job_.state;
   cuts_.emplace_back();
   if (known_ && state.field == nullptr) return;
   const std::size_t bytes_per_point = BytesPerPoint(scene, state.field != nullptr, !known_);
   std::size_t room = kMaxMessageBytes - kHeadBytes;
-  for (std::size_t probe = 0; probe < scene.probes().size(); ++probe) {
-    const std::size_t points = scene.probes()[probe].receivers.size();
-    const std::size_t frame_bytes = kFrameBytes + (known_ ? 0 : scene.probes()[probe].name.size());
+  for (std::size_t probe = 0; probe < scene.probes.size(); ++probe) {
+    const std::size_t points = scene.probes[probe].receivers.size();
+    const std::size_t frame_bytes = kFrameBytes + (known_ ? 0 : scene.probes[probe].name.size());
     for (std::size_t run = 0; run * FieldVersions::kPoints < points; ++run) {
       if (known_ && state.versions.changed[probe][run] <= *known_) continue;
       std::size_t first = run * FieldVersions::kPoints;
@@ -78,7 +78,7 @@ void WatchUpdate::PlanMessages() {
 }
 
 v1::WatchJobResponse WatchUpdate::Build(std::size_t index) const {
-  const Scene& scene = *job_.spec->scene;
+  const SceneOutline& scene = *job_.spec->scene;
   const JobState& state = *job_.state;
   v1::WatchJobResponse message = Heartbeat(epoch_, state.sequence);
   message.set_more(index + 1 < cuts_.size());
@@ -92,10 +92,10 @@ v1::WatchJobResponse WatchUpdate::Build(std::size_t index) const {
       FillProbeGeometry(scene, cut.probe, cut.first, cut.count, points);
       points.set_quantity(v1::ProbeResult::IRRADIANCE);
       points.set_count(static_cast<std::uint32_t>(cut.count));
-      points.set_channels(static_cast<std::uint32_t>(scene.channels()));
+      points.set_channels(static_cast<std::uint32_t>(scene.channels));
     }
     if (state.field != nullptr) {
-      FillProbeValues(*state.field, scene.channels(), cut.probe, cut.first, cut.count, points);
+      FillProbeValues(*state.field, scene.channels, cut.probe, cut.first, cut.count, points);
     }
   }
   return message;

@@ -15,8 +15,8 @@
 #include "core/render/field.h"
 #include "core/render/plan.h"
 #include "core/render/rendering.h"
-#include "core/scene/scene.h"
 #include "server/store/job_id.h"
+#include "server/store/scene_outline.h"
 
 namespace flatlight {
 
@@ -24,9 +24,9 @@ using WallTime = std::chrono::system_clock::time_point;
 
 struct JobSpec {
   JobId id;
-  std::string owner;  // The caller that made it.
-  std::shared_ptr<const Scene> scene;
-  Settings settings;  // As requested.
+  std::string owner;                          // The caller that made it.
+  std::shared_ptr<const SceneOutline> scene;  // Of the scene itself, only a job that has not ended has a share.
+  Settings settings;                          // As requested.
   Plan plan;
   WallTime create_time;
 };

@@ -10,11 +10,17 @@ namespace {
 
 constexpr std::chrono::hours kRequestMemory{24};
 
-// A little more than what a running job holds: scene, acceleration structure, and two fields with every array.
+// Of a job that has ended, a little more than what it holds: the probes' points and a field with every array.
+double EstimateEndedBytes(const JobSpec& spec) {
+  return 4096 + static_cast<double>(spec.scene->name.size()) +
+         static_cast<double>(spec.scene->traits.probe_points) * (100.0 + 8 * (6 * spec.scene->channels + 1));
+}
+
+// Until then: scene and acceleration structure besides, points with what is gathered there, and a second field.
 double EstimateBytes(const JobSpec& spec) {
-  const SceneTraits& traits = spec.scene->traits();
-  return 4096 + 400.0 * static_cast<double>(traits.elements) +
-         static_cast<double>(traits.probe_points) * (200.0 + 2 * 8 * (6 * spec.scene->channels() + 1));
+  const SceneTraits& traits = spec.scene->traits;
+  return EstimateEndedBytes(spec) + 400.0 * static_cast<double>(traits.elements) +
+         static_cast<double>(traits.probe_points) * (100.0 + 8 * (6 * spec.scene->channels + 1));
 }
 
 absl::Status NoSuchJob(const JobId& id) {
@@ -52,7 +58,7 @@ absl::StatusOr<JobRecord> MemoryJobStore::Insert(JobRecord job, const std::optio
     if (*earlier) {
       const auto number = numbers_.find(**earlier);
       if (number == numbers_.end()) return NoSuchJob(**earlier);
-      return jobs_.at(number->second);
+      return jobs_.at(number->second).job;
     }
   }
   const double bytes = EstimateBytes(*job.spec);
@@ -60,7 +66,10 @@ absl::StatusOr<JobRecord> MemoryJobStore::Insert(JobRecord job, const std::optio
   bytes_ += bytes;
   const std::uint64_t number = next_number_++;
   numbers_[job.spec->id] = number;
-  jobs_[number] = job;
+  Entry& entry = jobs_[number];
+  entry.job = job;
+  entry.bytes = bytes;
+  if (HasEnded(job.state->phase)) NoteEnd(number, entry);
   if (key) {
     const Name name{key->caller, key->method, key->request_id};
     requests_[name] = {key->fingerprint, job.spec->id};
@@ -80,10 +89,8 @@ absl::Status MemoryJobStore::MakeRoom(double bytes) {
                      "the job needs about " + std::to_string(static_cast<long long>(bytes)) +
                          " bytes; allowed: " + std::to_string(static_cast<long long>(limits_.max_bytes)));
   }
-  auto job = jobs_.begin();
   while (jobs_.size() >= limits_.max_jobs || bytes_ + bytes > limits_.max_bytes) {
-    while (job != jobs_.end() && !HasEnded(job->second.state->phase)) ++job;
-    if (job == jobs_.end()) {
+    if (ended_.empty()) {
       if (jobs_.size() >= limits_.max_jobs) {
         return MakeQuotaError("TOO_MANY_JOBS", "max_jobs",
                               "the server holds " + std::to_string(jobs_.size()) +
@@ -97,14 +104,31 @@ absl::Status MemoryJobStore::MakeRoom(double bytes) {
                                 "; allowed in all: " + std::to_string(static_cast<long long>(limits_.max_bytes)),
                             milliseconds(1000));
     }
-    Erase(job++);
+    Erase(ended_.begin()->second);
   }
   return absl::OkStatus();
 }
 
-void MemoryJobStore::Erase(std::map<std::uint64_t, JobRecord>::iterator job) {
-  bytes_ -= EstimateBytes(*job->second.spec);
-  numbers_.erase(job->second.spec->id);
+void MemoryJobStore::NoteEnd(std::uint64_t number, Entry& entry) {
+  bytes_ -= entry.bytes;
+  entry.bytes = EstimateEndedBytes(*entry.job.spec);
+  bytes_ += entry.bytes;
+  ended_bytes_ += entry.bytes;
+  entry.end = next_end_++;
+  ended_[entry.end] = number;
+  // The newest stays in any case: somebody has just waited for it.
+  while (ended_bytes_ > limits_.max_ended_bytes && ended_.size() > 1) Erase(ended_.begin()->second);
+}
+
+void MemoryJobStore::Erase(std::uint64_t number) {
+  const auto job = jobs_.find(number);
+  const Entry& entry = job->second;
+  bytes_ -= entry.bytes;
+  if (entry.end != 0) {
+    ended_bytes_ -= entry.bytes;
+    ended_.erase(entry.end);
+  }
+  numbers_.erase(entry.job.spec->id);
   jobs_.erase(job);
 }
 
@@ -113,7 +137,9 @@ absl::Status MemoryJobStore::Update(const JobId& id, std::shared_ptr<const JobSt
   const auto number = numbers_.find(id);
   if (number == numbers_.end()) return NoSuchJob(id);
   // The old state is released after the swap, which may free a large field.
-  jobs_.at(number->second).state.swap(state);
+  Entry& entry = jobs_.at(number->second);
+  entry.job.state.swap(state);
+  if (entry.end == 0 && HasEnded(entry.job.state->phase)) NoteEnd(number->second, entry);
   return absl::OkStatus();
 }
 
@@ -121,7 +147,7 @@ absl::StatusOr<JobRecord> MemoryJobStore::Get(const JobId& id) {
   const std::lock_guard lock(mutex_);
   const auto number = numbers_.find(id);
   if (number == numbers_.end()) return NoSuchJob(id);
-  return jobs_.at(number->second);
+  return jobs_.at(number->second).job;
 }
 
 JobPage MemoryJobStore::List(std::optional<std::uint64_t> before, std::size_t limit) {
@@ -130,7 +156,7 @@ JobPage MemoryJobStore::List(std::optional<std::uint64_t> before, std::size_t li
   auto job = before ? jobs_.lower_bound(*before) : jobs_.end();
   while (job != jobs_.begin() && page.jobs.size() < limit) {
     --job;
-    page.jobs.push_back(job->second);
+    page.jobs.push_back(job->second.job);
   }
   if (job != jobs_.begin()) page.next_before = job->first;
   return page;
@@ -140,7 +166,7 @@ absl::Status MemoryJobStore::Delete(const JobId& id) {
   const std::lock_guard lock(mutex_);
   const auto number = numbers_.find(id);
   if (number == numbers_.end()) return NoSuchJob(id);
-  Erase(jobs_.find(number->second));
+  Erase(number->second);
   return absl::OkStatus();
 }
 

@@ -20,7 +20,8 @@ class MemoryJobStore final : public JobStore {
  public:
   struct Limits {
     std::size_t max_jobs = 1000;
-    double max_bytes = 4e9;  // Of scenes and fields of all jobs, estimated.
+    double max_bytes = 4e9;        // Of scenes and fields of all jobs, estimated.
+    double max_ended_bytes = 1e9;  // Of the results of jobs that have ended, estimated.
     std::size_t max_requests = 100'000;
   };
   MemoryJobStore(const Limits& limits, const Clock& clock) : limits_(limits), clock_(clock) {}
@@ -40,15 +41,27 @@ class MemoryJobStore final : public JobStore {
   using Name = std::tuple<std::string, std::string, std::string>;  // Caller, method, request id.
 
   absl::StatusOr<std::optional<JobId>> FindRequestLocked(const RequestKey& key) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // What is kept of a job, and what for.
+  struct Entry {
+    JobRecord job;
+    double bytes = 0;
+    std::uint64_t end = 0;  // Its place in `ended_`; 0: it has not ended.
+  };
+
   absl::Status MakeRoom(double bytes) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void Erase(std::map<std::uint64_t, JobRecord>::iterator job) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Notes that a job holds only its result from now on. Drops the results that ended longest ago if there are too many.
+  void NoteEnd(std::uint64_t number, Entry& entry) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Erase(std::uint64_t number) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const Limits limits_;
   const Clock& clock_;
   std::mutex mutex_;
   std::uint64_t next_number_ ABSL_GUARDED_BY(mutex_) = 1;
   double bytes_ ABSL_GUARDED_BY(mutex_) = 0;
-  std::map<std::uint64_t, JobRecord> jobs_ ABSL_GUARDED_BY(mutex_);  // By number: in order of creation.
+  double ended_bytes_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::uint64_t next_end_ ABSL_GUARDED_BY(mutex_) = 1;
+  std::map<std::uint64_t, Entry> jobs_ ABSL_GUARDED_BY(mutex_);           // By number: in order of creation.
+  std::map<std::uint64_t, std::uint64_t> ended_ ABSL_GUARDED_BY(mutex_);  // Numbers, in the order of their ends.
   std::unordered_map<JobId, std::uint64_t> numbers_ ABSL_GUARDED_BY(mutex_);
   std::map<Name, Request> requests_ ABSL_GUARDED_BY(mutex_);
   std::deque<std::pair<Clock::Time, Name>> request_ages_ ABSL_GUARDED_BY(mutex_);  // Oldest first.

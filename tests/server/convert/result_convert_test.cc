@@ -48,7 +48,7 @@ TEST(ResultConvertTest, PositionsAndArcLengthAreInWorldUnits) {
   const auto scene = FarScene();
   ASSERT_NE(scene, nullptr);
   v1::ProbeResult out;
-  FillProbeGeometry(*scene, 0, 0, 3, out);
+  FillProbeGeometry(SceneOutline(*scene), 0, 0, 3, out);
   EXPECT_EQ(out.name(), "floor");
   EXPECT_THAT(out.positions(), Pointwise(DoubleNear(1e-9), std::vector<double>{1002, 50, 1006, 50, 1010, 50}));
   EXPECT_THAT(out.normals(), Pointwise(DoubleNear(1e-15), std::vector<double>{0, 1, 0, 1, 0, 1}));
@@ -58,7 +58,7 @@ TEST(ResultConvertTest, PositionsAndArcLengthAreInWorldUnits) {
 TEST(ResultConvertTest, FreePointsHaveNoArcLength) {
   const auto scene = FarScene();
   v1::ProbeResult out;
-  FillProbeGeometry(*scene, 1, 0, 1, out);
+  FillProbeGeometry(SceneOutline(*scene), 1, 0, 1, out);
   EXPECT_THAT(out.positions(), Pointwise(DoubleNear(1e-9), std::vector<double>{1001, 53}));
   EXPECT_THAT(out.normals(), ElementsAre(0, -1));
   EXPECT_THAT(out.arc_length(), IsEmpty());
@@ -67,7 +67,7 @@ TEST(ResultConvertTest, FreePointsHaveNoArcLength) {
 TEST(ResultConvertTest, ASliceHasThePointsNamed) {
   const auto scene = FarScene();
   v1::ProbeResult out;
-  FillProbeGeometry(*scene, 0, 1, 2, out);
+  FillProbeGeometry(SceneOutline(*scene), 0, 1, 2, out);
   FillProbeValues(ThreeChannelField(), 3, 0, 1, 2, out);
   EXPECT_THAT(out.arc_length(), Pointwise(DoubleNear(1e-9), std::vector<double>{6, 10}));
   EXPECT_EQ(out.count(), 2U);
@@ -104,7 +104,7 @@ TEST(ResultConvertTest, EveryArrayReachesItsOwnField) {
 TEST(ResultConvertTest, AResultHasAllProbes) {
   const auto scene = FarScene();
   Field field = ThreeChannelField();
-  v1::RenderResult result = ResultToProto(*scene, field);
+  v1::RenderResult result = ResultToProto(SceneOutline(*scene), field);
   EXPECT_EQ(result.scene(), "far");
   EXPECT_EQ(result.world_hash(), scene->world_hash());
   EXPECT_EQ(result.probe_hash(), scene->probe_hash());
@@ -116,7 +116,7 @@ TEST(ResultConvertTest, AResultHasAllProbes) {
   EXPECT_EQ(result.statistics().rays(), 1234);
   EXPECT_FALSE(result.statistics().has_error_bound());
   field.error_bound = 1e-9;
-  EXPECT_EQ(ResultToProto(*scene, field).statistics().error_bound(), 1e-9);
+  EXPECT_EQ(ResultToProto(SceneOutline(*scene), field).statistics().error_bound(), 1e-9);
 }
 
 TEST(ResultConvertTest, EndReasons) {

@@ -35,7 +35,7 @@ v1::RenderResult Render(const std::string& name, const Settings& settings) {
   const Cancellation never;
   const SteadyClock clock;
   while (!rendering->done()) rendering->Advance(executor, never, clock, std::chrono::seconds(1));
-  return ResultToProto(*scene, *rendering->Snapshot());
+  return ResultToProto(SceneOutline(*scene), *rendering->Snapshot());
 }
 
 Settings Exact() {

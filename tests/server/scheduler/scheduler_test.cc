@@ -44,18 +44,23 @@ class SchedulerTest : public ::testing::Test {
         });
   }
 
-  static std::shared_ptr<const JobSpec> Spec(const std::string& name, const std::vector<std::uint32_t>& counts = {8}) {
+  static std::shared_ptr<const Scene> MakeScene(const std::string& name, const std::vector<std::uint32_t>& counts) {
     SceneDescription description = testing::FloorAndLampDescription(counts);
     description.name = name;
     Diagnostics diagnostics;
+    return BuildScene(description, diagnostics);
+  }
+
+  absl::StatusOr<JobRecord> SubmitScene(std::shared_ptr<const Scene> scene,
+                                        const std::optional<RequestKey>& key = std::nullopt) {
     auto spec = std::make_shared<JobSpec>();
     spec->id = JobId::Random();
-    spec->scene = BuildScene(description, diagnostics);
-    return spec;
+    spec->scene = std::make_shared<SceneOutline>(*scene);
+    return scheduler_->Submit(spec, std::move(scene), key);
   }
 
   JobId Submit(const std::string& name) {
-    const auto job = scheduler_->Submit(Spec(name), std::nullopt);
+    const auto job = SubmitScene(MakeScene(name, {8}));
     EXPECT_THAT(job, IsOk());
     return job->spec->id;
   }
@@ -148,7 +153,7 @@ TEST_F(SchedulerTest, SaysWhichPointsChanged) {
   SchedulerOptions options;
   renderings_.set_on_step([&](auto&&...) { clock_.Advance(options.publish_interval); });
   MakeScheduler(options);
-  const auto job = scheduler_->Submit(Spec("a", {FieldVersions::kPoints + 1, 3}), std::nullopt);
+  const auto job = SubmitScene(MakeScene("a", {FieldVersions::kPoints + 1, 3}));
   ASSERT_THAT(job, IsOk());
   const JobState state = AwaitEnd(job->spec->id);
   // The first probe changed with every step, the second only with the first.
@@ -226,11 +231,31 @@ TEST_F(SchedulerTest, DeletingARunningJobStopsIt) {
   EXPECT_THAT(renderings_.slices(), ElementsAre("b", "b", "b", "b"));
 }
 
+TEST_F(SchedulerTest, AnEndedJobKeepsItsResultButNotItsScene) {
+  SchedulerOptions options;
+  options.max_running_jobs = 1;
+  MakeScheduler(options);
+  renderings_.Hold();
+  std::shared_ptr<const Scene> scene = MakeScene("a", {8});
+  const std::weak_ptr<const Scene> watched = scene;
+  const auto done = SubmitScene(scene);
+  const auto cancelled_while_waiting = SubmitScene(std::move(scene));
+  ASSERT_THAT(done, IsOk());
+  ASSERT_THAT(cancelled_while_waiting, IsOk());
+  EXPECT_FALSE(watched.expired());
+  ASSERT_THAT(scheduler_->Cancel(cancelled_while_waiting->spec->id), IsOk());
+  renderings_.Release();
+  AwaitEnd(done->spec->id);
+  scheduler_->Stop();  // Nothing is on its way to be freed any more.
+  EXPECT_TRUE(watched.expired());
+  EXPECT_NE(store_.Get(done->spec->id)->state->field, nullptr);
+}
+
 TEST_F(SchedulerTest, TheSameRequestMakesOneJob) {
   MakeScheduler();
   const RequestKey key{"me", "CreateJob", "id", "fingerprint"};
-  const auto first = scheduler_->Submit(Spec("a"), key);
-  const auto second = scheduler_->Submit(Spec("a"), key);
+  const auto first = SubmitScene(MakeScene("a", {8}), key);
+  const auto second = SubmitScene(MakeScene("a", {8}), key);
   ASSERT_THAT(first, IsOk());
   ASSERT_THAT(second, IsOk());
   EXPECT_EQ(first->spec->id, second->spec->id);
@@ -249,7 +274,7 @@ TEST_F(SchedulerTest, StopCancelsAllAndRefusesMore) {
   scheduler_->Stop();
   EXPECT_EQ(store_.Get(a)->state->phase, JobPhase::kCancelled);
   EXPECT_EQ(store_.Get(b)->state->phase, JobPhase::kCancelled);
-  EXPECT_THAT(scheduler_->Submit(Spec("c"), std::nullopt), StatusIs(absl::StatusCode::kUnavailable, _));
+  EXPECT_THAT(SubmitScene(MakeScene("c", {8})), StatusIs(absl::StatusCode::kUnavailable, _));
 }
 
 TEST_F(SchedulerTest, CountsTheProcessorTimeOfAllThreads) {

@@ -21,7 +21,7 @@ using testing::StatusIs;
 JobRecord NewJob(JobPhase phase = JobPhase::kQueued) {
   auto spec = std::make_shared<JobSpec>();
   spec->id = JobId::Random();
-  spec->scene = testing::FloorAndLamp({4});
+  spec->scene = std::make_shared<SceneOutline>(*testing::FloorAndLamp({4}));
   auto state = std::make_shared<JobState>();
   state->phase = phase;
   return {spec, state};
@@ -92,10 +92,43 @@ TEST_F(MemoryJobStoreTest, RefusesWhatNeedsTooMuchMemory) {
   ASSERT_THAT(small.Insert(ended, std::nullopt), IsOk());
   JobRecord big = NewJob();
   auto spec = std::make_shared<JobSpec>(*big.spec);
-  spec->scene = testing::FloorAndLamp({1000});
+  spec->scene = std::make_shared<SceneOutline>(*testing::FloorAndLamp({1000}));
   big.spec = spec;
   EXPECT_THAT(small.Insert(big, std::nullopt), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("20000")));
   EXPECT_THAT(small.Get(ended.spec->id), IsOk()) << "nothing is dropped for a job that cannot fit";
+}
+
+// A result has four points in one channel: a little less than 5000 bytes.
+TEST_F(MemoryJobStoreTest, DropsTheResultsThatEndedFirstWhenTheyBecomeTooMany) {
+  MemoryJobStore small({.max_ended_bytes = 10'000}, clock_);
+  const JobRecord jobs[] = {NewJob(), NewJob(), NewJob(), NewJob()};
+  const auto end = [&](int i) { return small.Update(jobs[i].spec->id, NewJob(JobPhase::kSucceeded).state); };
+  for (const JobRecord& job : jobs) ASSERT_THAT(small.Insert(job, std::nullopt), IsOk());
+  ASSERT_THAT(end(2), IsOk());
+  ASSERT_THAT(end(1), IsOk());
+  for (const JobRecord& job : jobs) ASSERT_THAT(small.Get(job.spec->id), IsOk());
+  ASSERT_THAT(end(0), IsOk());
+  EXPECT_THAT(small.Get(jobs[2].spec->id), StatusIs(absl::StatusCode::kNotFound, _)) << "the first to end";
+  for (const int kept : {0, 1, 3}) EXPECT_THAT(small.Get(jobs[kept].spec->id), IsOk()) << kept;
+}
+
+TEST_F(MemoryJobStoreTest, TheNewestResultStaysHoweverLarge) {
+  MemoryJobStore small({.max_ended_bytes = 10}, clock_);
+  const JobRecord job = NewJob(JobPhase::kSucceeded);
+  ASSERT_THAT(small.Insert(job, std::nullopt), IsOk());
+  EXPECT_THAT(small.Get(job.spec->id), IsOk());
+}
+
+// A scene counts until its job has ended.
+TEST_F(MemoryJobStoreTest, AnEndedJobMakesRoomForAnother) {
+  MemoryJobStore small({.max_bytes = 12'000}, clock_);
+  const JobRecord first = NewJob();
+  const JobRecord second = NewJob();
+  ASSERT_THAT(small.Insert(first, std::nullopt), IsOk());
+  EXPECT_THAT(small.Insert(second, std::nullopt), StatusIs(absl::StatusCode::kResourceExhausted, _));
+  ASSERT_THAT(small.Update(first.spec->id, NewJob(JobPhase::kSucceeded).state), IsOk());
+  ASSERT_THAT(small.Insert(second, std::nullopt), IsOk());
+  EXPECT_THAT(small.Get(first.spec->id), IsOk());
 }
 
 TEST_F(MemoryJobStoreTest, TheSameRequestFindsItsJob) {
