@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/execution/cancellation.h"
+#include "server/scheduler/field_check.h"
 #include "server/scheduler/field_versions.h"
 #include "server/scheduler/metered_executor.h"
 #include "server/store/error.h"
@@ -192,6 +193,7 @@ bool Scheduler::RunSlice(Run& run) {
     publish = done || run.cancellation.cancelled() || (first && has_picture) || now - run.published >= interval;
     if (publish && has_picture) {
       next.field = rendering.Snapshot();
+      run.failure = CheckFinite(*run.spec->scene, *next.field);
       next.versions = StampVersions(*run.spec->scene, run.state.field.get(), run.state.versions, *next.field,
                                     run.state.sequence + 1);
       run.snapshot_cost = clock_.Now() - now;

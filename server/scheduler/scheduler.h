@@ -51,7 +51,9 @@ class Scheduler {
   // returns that one.
   absl::StatusOr<JobRecord> Submit(std::shared_ptr<const JobSpec> spec, std::shared_ptr<const Scene> scene,
                                    const std::optional<RequestKey>& key);
-  // Stops the work and returns the ended job, after at most one shard's time. An ended job stays as it is.
+  // Stops the work and returns the ended job, after at most one shard's time. An ended job stays as it is. What is
+  // being prepared (for a million curves about a second's work) is prepared to its end, for nothing, after the job has
+  // ended.
   absl::StatusOr<JobRecord> Cancel(const JobId& id);
   // Cancels and removes.
   absl::Status Delete(const JobId& id);

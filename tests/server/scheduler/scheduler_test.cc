@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <condition_variable>
+#include <limits>
 #include <new>
 #include <stdexcept>
 
@@ -216,6 +217,38 @@ TEST_F(SchedulerTest, AFailureOnAPoolThreadEndsItsJobOnly) {
   EXPECT_THAT(state.error, StatusIs(absl::StatusCode::kInternal, HasSubstr("the roof leaks")));
   EXPECT_THAT(AwaitEnd(big).error, StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("memory")));
   EXPECT_EQ(AwaitEnd(good).phase, JobPhase::kSucceeded);
+}
+
+// Its pictures are no numbers.
+class BrokenRendering final : public Rendering {
+ public:
+  void Advance(Executor&, const Cancellation&, const Clock&, Clock::Duration) override {}
+  bool done() const override { return true; }
+  EndReason end_reason() const override { return EndReason::kSamplesDone; }
+  RenderProgress Progress() const override { return {}; }
+  std::shared_ptr<const Field> Snapshot() const override {
+    auto field = std::make_shared<Field>();
+    field->probes.resize(1);
+    field->probes[0].irradiance.assign(8, 1);
+    field->probes[0].gradient.assign(8, 0);
+    field->probes[0].gradient[5] = -std::numeric_limits<double>::infinity();
+    return field;
+  }
+};
+
+TEST_F(SchedulerTest, InfinitiesAndNansAreAFailureAndNotShown) {
+  scheduler_ = std::make_unique<Scheduler>(
+      SchedulerOptions(), store_, pool_, clock_, [](auto&&...) { return std::make_unique<BrokenRendering>(); },
+      [this](const JobId&) {
+        const std::lock_guard lock(mutex_);
+        changed_.notify_all();
+      });
+  const JobState state = AwaitEnd(Submit("a"));
+  EXPECT_EQ(state.phase, JobPhase::kFailed);
+  const std::string probe = MakeScene("a", {8})->probes()[0].name;
+  EXPECT_THAT(state.error, StatusIs(absl::StatusCode::kInternal,
+                                    HasSubstr("probe \"" + probe + "\": gradient at point 5 is infinite")));
+  EXPECT_EQ(state.field, nullptr);
 }
 
 TEST_F(SchedulerTest, DeletingARunningJobStopsIt) {
