@@ -11,6 +11,7 @@
 #include "server/service/calls_under_way.h"
 #include "server/service/guard.h"
 #include "server/service/limits.h"
+#include "server/service/scene_cache.h"
 #include "server/store/job_store.h"
 #include "server/store/scene_store.h"
 
@@ -24,6 +25,7 @@ struct Backend {
   const Guard guard;
   JobStore& jobs;
   SceneStore& scenes;
+  SceneCache& built_scenes;
   Scheduler& scheduler;
   // For work that takes longer than an event thread may: requests of ordinary size, and those that may take seconds.
   TaskQueue& quick;

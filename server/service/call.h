@@ -12,6 +12,7 @@
 #include "grpcpp/support/server_callback.h"
 #include "server/service/backend.h"
 #include "server/service/message_bytes.h"
+#include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
 #include "server/store/error.h"
 
@@ -28,6 +29,15 @@ absl::Status PostTo(TaskQueue& queue, std::size_t bytes, Task task) {
   if (queue.Post(bytes, std::move(task))) return absl::OkStatus();
   return MakeQuotaError("SERVER_BUSY", "max_waiting_bytes", "too many requests wait already",
                         std::chrono::milliseconds(500));
+}
+
+// Work on a call is wanted until the caller goes or the server goes down.
+inline Proceed WhileWanted(const Backend& backend, const grpc::CallbackServerContext& context) {
+  return [&backend, &context]() -> absl::Status {
+    if (backend.draining) return MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down");
+    if (context.IsCancelled()) return MakeError(absl::StatusCode::kCancelled, "CALL_CANCELLED", "the caller has gone");
+    return absl::OkStatus();
+  };
 }
 
 // Answers a unary call with `work(caller, request)`, a StatusOr<Response>, run in `lane(request)`.

@@ -6,9 +6,11 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <string_view>
+#include <system_error>
 
 #include "server/store/error.h"
 
@@ -24,6 +26,13 @@ absl::Status BadAddress(const std::string& message) {
 bool IsLoopback4(const std::string& host) {
   in_addr address{};
   return inet_pton(AF_INET, host.c_str(), &address) == 1 && (ntohl(address.s_addr) >> 24) == 127;
+}
+
+sockaddr_un UnixAddress(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::memcpy(address.sun_path, path.c_str(), path.size());
+  return address;
 }
 
 }  // namespace
@@ -60,10 +69,38 @@ absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text) {
   return address;
 }
 
+std::string WhyNotListening(const ListenAddress& address) {
+  const auto try_to_bind = [](const auto& socket_address) {
+    const auto* const generic = reinterpret_cast<const sockaddr*>(&socket_address);
+    const int socket_fd = socket(generic->sa_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (socket_fd < 0) return errno;
+    const int error = bind(socket_fd, generic, sizeof(socket_address)) == 0 ? 0 : errno;
+    close(socket_fd);
+    return error;
+  };
+  const auto port = htons(static_cast<std::uint16_t>(address.port));
+  int error = 0;
+  if (!address.path.empty()) {
+    error = try_to_bind(UnixAddress(address.path));
+    if (error == 0) unlink(address.path.c_str());
+  } else if (address.host == "[::1]") {
+    sockaddr_in6 six{};
+    six.sin6_family = AF_INET6;
+    six.sin6_addr = in6addr_loopback;
+    six.sin6_port = port;
+    error = try_to_bind(six);
+  } else {
+    sockaddr_in four{};
+    four.sin_family = AF_INET;
+    inet_pton(AF_INET, address.host.c_str(), &four.sin_addr);
+    four.sin_port = port;
+    error = try_to_bind(four);
+  }
+  return error == 0 ? std::string() : std::generic_category().message(error);
+}
+
 bool IsListening(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  std::memcpy(address.sun_path, path.c_str(), path.size());
+  const sockaddr_un address = UnixAddress(path);
   const int socket_fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (socket_fd < 0) return false;
   const bool connected = connect(socket_fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;

@@ -21,6 +21,9 @@ struct ListenAddress {
 // Reads HOST:PORT (a loopback host) or unix:PATH. INVALID_ARGUMENT says what is allowed.
 absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
 
+// Why a server cannot listen there, in the system's words; empty if it can.
+std::string WhyNotListening(const ListenAddress& address);
+
 // Whether something accepts connections on a Unix socket: gRPC would push it aside.
 bool IsListening(const std::string& path);
 

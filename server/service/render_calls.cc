@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/render/plan.h"
 #include "server/convert/settings_convert.h"
@@ -18,6 +21,8 @@ namespace flatlight {
 namespace {
 
 constexpr std::size_t kMaxRequestIdBytes = 128;
+// Of a list of jobs, unless one alone is longer. Clients of gRPC take 4 MiB.
+constexpr std::size_t kMaxPageBytes = 2u << 20;
 
 struct PlannedScene {
   std::shared_ptr<const Scene> scene;
@@ -25,12 +30,18 @@ struct PlannedScene {
   Plan plan;
 };
 
+// A request may name one skip very often; the job, which is sent often, need not.
+void DropRepeats(std::vector<std::string>& names) {
+  std::set<std::string> seen;
+  std::erase_if(names, [&](const std::string& name) { return !seen.insert(name).second; });
+}
+
 // Every mistake of the scene and of the settings is reported at once.
 absl::StatusOr<PlannedScene> MakePlannedScene(Backend& backend, const v1::SceneSource& source,
-                                              const v1::Settings& settings) {
+                                              const v1::Settings& settings, const Proceed& proceed) {
   PlannedScene planned;
   Diagnostics scene_diagnostics;
-  auto scene = LoadScene(source, backend.scenes, backend.limits, scene_diagnostics);
+  auto scene = LoadScene(source, {backend.scenes, backend.built_scenes, backend.limits}, proceed, scene_diagnostics);
   if (!scene.ok()) return scene.status();
   planned.scene = *std::move(scene);
   Diagnostics diagnostics = scene_diagnostics;
@@ -40,6 +51,8 @@ absl::StatusOr<PlannedScene> MakePlannedScene(Backend& backend, const v1::SceneS
   if (!scene_diagnostics.empty()) return MakeDiagnosticsError("BAD_SCENE", "the scene", diagnostics);
   if (!plan) return MakeDiagnosticsError("BAD_SETTINGS", "the settings", diagnostics);
   planned.plan = *std::move(plan);
+  DropRepeats(planned.settings.no_skip);
+  DropRepeats(planned.plan.settings.no_skip);
   const auto threads = static_cast<std::uint32_t>(backend.threads);
   planned.plan.settings.threads = std::min(planned.settings.threads.value_or(threads), threads);
   return planned;
@@ -61,7 +74,8 @@ v1::Job WholeJob(const JobRecord& job) { return JobToProto(*job.spec, *job.state
 
 }  // namespace
 
-absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const v1::CreateJobRequest& request) {
+absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const v1::CreateJobRequest& request,
+                                  const Proceed& proceed) {
   if (backend.draining) return MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down");
   const auto key = KeyOf(caller, request);
   if (!key.ok()) return key.status();
@@ -74,7 +88,7 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
       return WholeJob(*job);
     }
   }
-  auto planned = MakePlannedScene(backend, request.scene(), request.settings());
+  auto planned = MakePlannedScene(backend, request.scene(), request.settings(), proceed);
   if (!planned.ok()) return planned.status();
   auto spec = std::make_shared<JobSpec>();
   spec->id = JobId::Random();
@@ -101,7 +115,16 @@ absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJo
   if (!page.ok()) return page.status();
   const JobPage jobs = backend.jobs.List(page->position, page->size);
   v1::ListJobsResponse response;
-  for (const JobRecord& job : jobs.jobs) *response.add_jobs() = WholeJob(job);
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < jobs.jobs.size(); ++i) {
+    v1::Job job = WholeJob(jobs.jobs[i]);
+    bytes += job.ByteSizeLong();
+    if (i > 0 && bytes > kMaxPageBytes) {
+      response.set_next_page_token(PageToken(jobs.positions[i - 1]));
+      return response;
+    }
+    *response.add_jobs() = std::move(job);
+  }
   if (jobs.next_before) response.set_next_page_token(PageToken(*jobs.next_before));
   return response;
 }
@@ -121,8 +144,9 @@ absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const v1::Dele
   return v1::DeleteJobResponse();
 }
 
-absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const v1::ExplainJobRequest& request) {
-  const auto planned = MakePlannedScene(backend, request.scene(), request.settings());
+absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const v1::ExplainJobRequest& request,
+                                                  const Proceed& proceed) {
+  const auto planned = MakePlannedScene(backend, request.scene(), request.settings(), proceed);
   if (!planned.ok()) return planned.status();
   v1::ExplainJobResponse response;
   *response.mutable_plan() = PlanToProto(planned->plan);

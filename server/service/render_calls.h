@@ -5,16 +5,19 @@
 #include "absl/status/statusor.h"
 #include "flatlight/v1/render_service.pb.h"
 #include "server/service/backend.h"
+#include "server/service/scene_source.h"
 
 namespace flatlight {
 
-// The unary calls of RenderService as plain functions.
-absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const v1::CreateJobRequest& request);
+// The unary calls of RenderService as plain functions. Those that may take seconds end early when `proceed` says so.
+absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const v1::CreateJobRequest& request,
+                                  const Proceed& proceed);
 absl::StatusOr<v1::Job> GetJob(Backend& backend, const v1::GetJobRequest& request);
 absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJobsRequest& request);
 absl::StatusOr<v1::Job> CancelJob(Backend& backend, const v1::CancelJobRequest& request);
 absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const v1::DeleteJobRequest& request);
-absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const v1::ExplainJobRequest& request);
+absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const v1::ExplainJobRequest& request,
+                                                  const Proceed& proceed);
 
 }  // namespace flatlight
 

@@ -30,10 +30,10 @@ class RefusedStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
 
 grpc::ServerUnaryReactor* RenderService::CreateJob(Context* context, const Bytes* request, Bytes* response) {
   const auto lane = [this](const v1::CreateJobRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
-  return Answer<v1::CreateJobRequest>(backend_, context, request, response, lane,
-                                      [this](const Caller& caller, const v1::CreateJobRequest& r) {
-                                        return flatlight::CreateJob(backend_, caller, r);
-                                      });
+  return Answer<v1::CreateJobRequest>(
+      backend_, context, request, response, lane, [this, context](const Caller& caller, const v1::CreateJobRequest& r) {
+        return flatlight::CreateJob(backend_, caller, r, WhileWanted(backend_, *context));
+      });
 }
 
 grpc::ServerUnaryReactor* RenderService::GetJob(Context* context, const Bytes* request, Bytes* response) {
@@ -62,9 +62,10 @@ grpc::ServerUnaryReactor* RenderService::DeleteJob(Context* context, const Bytes
 
 grpc::ServerUnaryReactor* RenderService::ExplainJob(Context* context, const Bytes* request, Bytes* response) {
   const auto lane = [this](const v1::ExplainJobRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
-  return Answer<v1::ExplainJobRequest>(
-      backend_, context, request, response, lane,
-      [this](const Caller&, const v1::ExplainJobRequest& r) { return flatlight::ExplainJob(backend_, r); });
+  return Answer<v1::ExplainJobRequest>(backend_, context, request, response, lane,
+                                       [this, context](const Caller&, const v1::ExplainJobRequest& r) {
+                                         return flatlight::ExplainJob(backend_, r, WhileWanted(backend_, *context));
+                                       });
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::WatchJob(Context* context, const Bytes* request) {

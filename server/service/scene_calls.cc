@@ -91,12 +91,15 @@ absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const v1::
   }
   const std::string sha256 = request.name().substr(std::string("scenes/").size());
   if (absl::Status deleted = backend.scenes.Delete(sha256); !deleted.ok()) return deleted;
+  backend.built_scenes.Drop(sha256);
   return v1::DeleteSceneResponse();
 }
 
-absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const v1::ValidateSceneRequest& request) {
+absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const v1::ValidateSceneRequest& request,
+                                                        const Proceed& proceed) {
   Diagnostics diagnostics;
-  const auto scene = LoadScene(request.scene(), backend.scenes, backend.limits, diagnostics);
+  const auto scene =
+      LoadScene(request.scene(), {backend.scenes, backend.built_scenes, backend.limits}, proceed, diagnostics);
   if (!scene.ok()) return scene.status();
   v1::ValidateSceneResponse response;
   for (const Diagnostic& diagnostic : diagnostics.kept()) {

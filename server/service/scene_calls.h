@@ -6,6 +6,7 @@
 #include "flatlight/v1/scene_service.pb.h"
 #include "flatlight/v1/server_service.pb.h"
 #include "server/service/backend.h"
+#include "server/service/scene_source.h"
 
 namespace flatlight {
 
@@ -14,7 +15,8 @@ absl::StatusOr<v1::UploadSceneResponse> UploadScene(Backend& backend, const v1::
 absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const v1::GetSceneRequest& request);
 absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const v1::ListScenesRequest& request);
 absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const v1::DeleteSceneRequest& request);
-absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const v1::ValidateSceneRequest& request);
+absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const v1::ValidateSceneRequest& request,
+                                                        const Proceed& proceed);
 v1::GetCapabilitiesResponse GetCapabilities(const Backend& backend);
 
 }  // namespace flatlight

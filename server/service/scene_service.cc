@@ -41,8 +41,9 @@ grpc::ServerUnaryReactor* SceneService::DeleteScene(Context* context, const Byte
 grpc::ServerUnaryReactor* SceneService::ValidateScene(Context* context, const Bytes* request, Bytes* response) {
   const auto lane = [this](const v1::ValidateSceneRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
   return Answer<v1::ValidateSceneRequest>(
-      backend_, context, request, response, lane,
-      [this](const Caller&, const v1::ValidateSceneRequest& r) { return flatlight::ValidateScene(backend_, r); });
+      backend_, context, request, response, lane, [this, context](const Caller&, const v1::ValidateSceneRequest& r) {
+        return flatlight::ValidateScene(backend_, r, WhileWanted(backend_, *context));
+      });
 }
 
 grpc::ServerUnaryReactor* ServerService::GetCapabilities(grpc::CallbackServerContext* context,

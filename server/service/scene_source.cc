@@ -61,26 +61,47 @@ absl::StatusOr<NamedScene> FindScene(const std::string& name, SceneStore& scenes
   return scene;
 }
 
-absl::StatusOr<std::shared_ptr<const Scene>> LoadScene(const v1::SceneSource& source, SceneStore& scenes,
-                                                       const Limits& limits, Diagnostics& diagnostics) {
-  std::shared_ptr<const Scene> nothing;
+namespace {
+
+absl::StatusOr<std::shared_ptr<const Scene>> LoadNamed(const std::string& name, const SceneShelf& shelf,
+                                                       const Proceed& proceed, Diagnostics& diagnostics) {
+  const auto named = FindScene(name, shelf.uploads);
+  if (!named.ok()) return named.status();
+  const std::string id = name.substr(kPrefix.size());
+  if (auto built = shelf.built.Get(id)) {
+    shelf.uploads.SetTitle(id, built->name());  // The file may have been deleted and uploaded again.
+    return built;
+  }
+  if (absl::Status wanted = proceed(); !wanted.ok()) return wanted;
+  v1::Scene proto;
+  ReadSceneJson(*named->json, proto, diagnostics);  // Mistakes of form do not hide those of meaning.
+  if (!named->info.gallery()) shelf.uploads.SetTitle(id, proto.name());
+  if (!WithinLimits(proto, shelf.limits, diagnostics)) return nullptr;
+  if (absl::Status wanted = proceed(); !wanted.ok()) return wanted;
+  auto scene = SceneFromProto(proto, diagnostics);
+  if (scene != nullptr && !named->info.gallery()) shelf.built.Put(id, scene);
+  return scene;
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<const Scene>> LoadScene(const v1::SceneSource& source, const SceneShelf& shelf,
+                                                       const Proceed& proceed, Diagnostics& diagnostics) {
+  absl::StatusOr<std::shared_ptr<const Scene>> scene;
   switch (source.source_case()) {
     case v1::SceneSource::kScene:
-      if (!WithinLimits(source.scene(), limits, diagnostics)) return nothing;
-      return SceneFromProto(source.scene(), diagnostics);
-    case v1::SceneSource::kName: {
-      const auto named = FindScene(source.name(), scenes);
-      if (!named.ok()) return named.status();
-      v1::Scene proto;
-      ReadSceneJson(*named->json, proto, diagnostics);  // Mistakes of form do not hide those of meaning.
-      if (!named->info.gallery()) scenes.SetTitle(source.name().substr(kPrefix.size()), proto.name());
-      if (!WithinLimits(proto, limits, diagnostics)) return nothing;
-      return SceneFromProto(proto, diagnostics);
-    }
-    case v1::SceneSource::SOURCE_NOT_SET:
+      if (absl::Status wanted = proceed(); !wanted.ok()) return wanted;
+      if (!WithinLimits(source.scene(), shelf.limits, diagnostics)) return nullptr;
+      scene = SceneFromProto(source.scene(), diagnostics);
       break;
+    case v1::SceneSource::kName:
+      scene = LoadNamed(source.name(), shelf, proceed, diagnostics);
+      break;
+    case v1::SceneSource::SOURCE_NOT_SET:
+      return MakeFieldError("scene", "missing; give a name (scenes/{scene}) or a scene");
   }
-  return MakeFieldError("scene", "missing; give a name (scenes/{scene}) or a scene");
+  if (absl::Status wanted = proceed(); !wanted.ok()) return wanted;
+  return scene;
 }
 
 }  // namespace flatlight

@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_SERVER_SERVICE_SCENE_SOURCE_H_
 #define FLATLIGHT_SERVER_SERVICE_SCENE_SOURCE_H_
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -12,6 +13,7 @@
 #include "flatlight/v1/scene.pb.h"
 #include "flatlight/v1/scene_service.pb.h"
 #include "server/service/limits.h"
+#include "server/service/scene_cache.h"
 #include "server/store/scene_store.h"
 
 namespace flatlight {
@@ -25,9 +27,19 @@ struct NamedScene {
 // INVALID_ARGUMENT if `name` is not scenes/{scene}, NOT_FOUND if there is none.
 absl::StatusOr<NamedScene> FindScene(const std::string& name, SceneStore& scenes);
 
+// Asked before each phase that may take seconds: is the work still wanted? The error says why not.
+using Proceed = std::function<absl::Status()>;
+
+struct SceneShelf {
+  SceneStore& uploads;
+  SceneCache& built;
+  const Limits& limits;
+};
+
 // The scene that a request names or carries, checked and ready. Null if it has mistakes: they are in `diagnostics`.
-absl::StatusOr<std::shared_ptr<const Scene>> LoadScene(const v1::SceneSource& source, SceneStore& scenes,
-                                                       const Limits& limits, Diagnostics& diagnostics);
+// What `proceed` answers, if it is an error; it is asked before reading, before building, and at the end.
+absl::StatusOr<std::shared_ptr<const Scene>> LoadScene(const v1::SceneSource& source, const SceneShelf& shelf,
+                                                       const Proceed& proceed, Diagnostics& diagnostics);
 
 }  // namespace flatlight
 

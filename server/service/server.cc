@@ -16,6 +16,7 @@
 #include "server/service/build_version.h"
 #include "server/service/listen_address.h"
 #include "server/service/render_service.h"
+#include "server/service/scene_cache.h"
 #include "server/service/scene_service.h"
 #include "server/service/watch_hub.h"
 #include "server/store/error.h"
@@ -28,6 +29,7 @@ namespace {
 
 constexpr std::size_t kMaxWaitingQuickBytes = 64u << 20;
 constexpr std::size_t kMaxWaitingSlowBytes = 256u << 20;
+constexpr std::size_t kMaxBuiltSceneBytes = 1u << 30;
 constexpr std::chrono::milliseconds kFlush{100};
 constexpr int kQuickThreads = 4;
 constexpr int kSlowThreads = 2;
@@ -67,6 +69,7 @@ struct Server::Parts {
                 .guard = Guard(options.token),
                 .jobs = jobs,
                 .scenes = scenes,
+                .built_scenes = built_scenes,
                 .scheduler = scheduler,
                 .quick = quick,
                 .slow = slow},
@@ -78,6 +81,7 @@ struct Server::Parts {
   ThreadPool pool;
   MemoryJobStore jobs;
   MemorySceneStore scenes;
+  SceneCache built_scenes{kMaxBuiltSceneBytes};
   WatchHub hub;
   Scheduler scheduler;
   TaskQueue quick;
@@ -99,11 +103,11 @@ const std::string& Server::address() const { return parts_->address; }
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
   const auto address = ParseListenAddress(options.address);
   if (!address.ok()) return address.status();
-  const auto taken = [&] {
-    return MakeError(absl::StatusCode::kUnavailable, "ADDRESS_TAKEN",
-                     "cannot listen on " + options.address + ": another program listens there, or it is not allowed");
+  const auto cannot_listen = [&](const std::string& why) {
+    return MakeError(absl::StatusCode::kUnavailable, "CANNOT_LISTEN",
+                     "cannot listen on " + options.address + ": " + why);
   };
-  if (!address->path.empty() && IsListening(address->path)) return taken();
+  if (!address->path.empty() && IsListening(address->path)) return cannot_listen("another program listens there");
 
   auto parts = std::make_unique<Parts>(options);
   grpc::EnableDefaultHealthCheckService(true);
@@ -120,7 +124,10 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   builder.RegisterService(&parts->scene_service);
   builder.RegisterService(&parts->server_service);
   parts->grpc = builder.BuildAndStart();
-  if (parts->grpc == nullptr) return taken();
+  if (parts->grpc == nullptr) {
+    const std::string why = WhyNotListening(*address);
+    return cannot_listen(why.empty() ? "another program listened there until just now" : why);
+  }
   parts->address = address->ToString(port);
   for (const char* service : {v1::RenderService::service_full_name(), v1::SceneService::service_full_name(),
                               v1::ServerService::service_full_name()}) {

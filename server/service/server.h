@@ -24,7 +24,8 @@ struct ServerOptions {
 
 class Server {
  public:
-  // Serves from now on. INVALID_ARGUMENT for an address that is not allowed, UNAVAILABLE for one that is taken.
+  // Serves from now on. INVALID_ARGUMENT for an address that is not allowed, UNAVAILABLE, with the reason, where it
+  // cannot listen.
   static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
   // As Drain without grace.
   ~Server();

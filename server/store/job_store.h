@@ -25,6 +25,7 @@ struct RequestKey {
 
 struct JobPage {
   std::vector<JobRecord> jobs;               // Newest first.
+  std::vector<std::uint64_t> positions;      // Of each: `before` for a page that begins after it.
   std::optional<std::uint64_t> next_before;  // Where the next page begins; absent on the last page.
 };
 

@@ -157,6 +157,7 @@ JobPage MemoryJobStore::List(std::optional<std::uint64_t> before, std::size_t li
   while (job != jobs_.begin() && page.jobs.size() < limit) {
     --job;
     page.jobs.push_back(job->second.job);
+    page.positions.push_back(job->first);
   }
   if (job != jobs_.begin()) page.next_before = job->first;
   return page;

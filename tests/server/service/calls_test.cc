@@ -5,6 +5,7 @@
 
 #include <thread>
 
+#include "core/render/plan.h"
 #include "grpcpp/impl/codegen/client_unary_call.h"
 #include "server/service/build_version.h"
 #include "server/store/sha256.h"
@@ -237,6 +238,37 @@ TEST_F(CallsTest, JobsAreListedInPages) {
   EXPECT_EQ(server.render().ListJobs(&context, request, &response).error_code(), INVALID_ARGUMENT);
 }
 
+TEST_F(CallsTest, APageOfLargeJobsHasFewerOfThem) {
+  LoopbackServer server(Options());
+  v1::CreateJobRequest request = NewJob();
+  request.mutable_scene()->mutable_scene()->set_name(std::string(900'000, 'x'));
+  std::vector<std::string> created;
+  for (int i = 0; i < 5; ++i) created.push_back(Create(server, request).name());
+  std::vector<std::string> listed;
+  v1::ListJobsRequest list;
+  do {
+    TestContext context;
+    v1::ListJobsResponse page;
+    const grpc::Status status = server.render().ListJobs(&context, list, &page);
+    ASSERT_TRUE(status.ok()) << status.error_message();
+    EXPECT_LE(page.jobs_size(), 2);
+    for (const v1::Job& job : page.jobs()) listed.push_back(job.name());
+    list.set_page_token(page.next_page_token());
+  } while (!list.page_token().empty());
+  EXPECT_THAT(listed, ::testing::ElementsAreArray(created.rbegin(), created.rend()));
+}
+
+TEST_F(CallsTest, ASkipNamedOftenIsKeptOnce) {
+  LoopbackServer server(Options());
+  v1::CreateJobRequest request = NewJob();
+  for (int i = 0; i < 1000; ++i) {
+    for (const std::string& name : SkipNames()) request.mutable_settings()->add_no_skip(name);
+  }
+  const v1::Job job = Create(server, request);
+  EXPECT_THAT(job.settings().no_skip(), ::testing::ElementsAreArray(SkipNames()));
+  EXPECT_THAT(job.plan().settings().no_skip(), ::testing::ElementsAreArray(SkipNames()));
+}
+
 TEST_F(CallsTest, BadAndUnknownNamesAreErrors) {
   LoopbackServer server(Options());
   v1::GetJobRequest request;
@@ -392,6 +424,15 @@ TEST(ServerTest, ATakenAddressIsAnError) {
   options.address = first.server().address();
   const auto second = Server::Start(options);
   EXPECT_TRUE(absl::IsUnavailable(second.status())) << second.status();
+  EXPECT_THAT(std::string(second.status().message()), HasSubstr("in use"));
+}
+
+TEST(ServerTest, AnAddressThatCannotBeSaysWhy) {
+  ServerOptions options;
+  options.address = "unix:/nonexistent/socket";
+  const auto server = Server::Start(options);
+  EXPECT_TRUE(absl::IsUnavailable(server.status())) << server.status();
+  EXPECT_THAT(std::string(server.status().message()), HasSubstr("No such file or directory"));
 }
 
 }  // namespace

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/scene_cache.h"
+
+#include <gtest/gtest.h>
+
+#include "server/service/scene_source.h"
+#include "server/store/error.h"
+#include "server/store/memory_scene_store.h"
+#include "tests/support/rendering/fake_clock.h"
+#include "tests/support/rendering/test_scene.h"
+
+namespace flatlight {
+namespace {
+
+TEST(SceneCache, TheSceneUsedLongestAgoGoesFirst) {
+  const auto scene = testing::FloorAndLamp({4});
+  SceneCache cache(2 * SceneCache::EstimateBytes(*scene));
+  cache.Put("a", scene);
+  cache.Put("b", scene);
+  EXPECT_EQ(cache.Get("a"), scene);
+  cache.Put("c", scene);
+  EXPECT_EQ(cache.Get("b"), nullptr);
+  EXPECT_EQ(cache.Get("a"), scene);
+  EXPECT_EQ(cache.Get("c"), scene);
+  cache.Drop("a");
+  EXPECT_EQ(cache.Get("a"), nullptr);
+  cache.Put("d", scene);
+  EXPECT_EQ(cache.Get("c"), scene) << "there was room";
+}
+
+TEST(SceneCache, ASceneLargerThanAllDrivesNoneOut) {
+  const auto small = testing::FloorAndLamp({4});
+  SceneCache cache(SceneCache::EstimateBytes(*small));
+  cache.Put("small", small);
+  cache.Put("large", testing::FloorAndLamp({1000}));
+  EXPECT_EQ(cache.Get("large"), nullptr);
+  EXPECT_EQ(cache.Get("small"), small);
+}
+
+class LoadSceneTest : public ::testing::Test {
+ protected:
+  LoadSceneTest() {
+    EXPECT_TRUE(store_.Upload(hash_, text_.size(), 0, text_).ok());
+    source_.set_name("scenes/" + hash_);
+  }
+  // Lets `phases` phases begin.
+  absl::StatusOr<std::shared_ptr<const Scene>> Load(int phases) {
+    Diagnostics diagnostics;
+    auto scene = LoadScene(
+        source_, {store_, cache_, Limits()},
+        [&] { return --phases < 0 ? MakeError(absl::StatusCode::kCancelled, "STOPPED", "") : absl::OkStatus(); },
+        diagnostics);
+    EXPECT_TRUE(diagnostics.empty());
+    return scene;
+  }
+
+  const std::string text_ = R"({"name":"room","plane":{
+      "materials":[{"name":"grey","lambertian":{"reflectance":[0.5]}}],
+      "curves":[{"name":"floor","segment":{"a":{"x":0,"y":0},"b":{"x":1,"y":0}},"material":"grey"}]},
+      "probes":[{"name":"floor","curve":"floor","count":3}]})";
+  const std::string hash_ = Sha256Of(text_);
+  testing::FakeClock clock_;
+  MemorySceneStore store_{{}, clock_};
+  SceneCache cache_{1u << 20};
+  v1::SceneSource source_;
+};
+
+TEST_F(LoadSceneTest, AnUploadIsBuiltOnce) {
+  const auto first = Load(3);
+  ASSERT_TRUE(first.ok()) << first.status();
+  ASSERT_NE(*first, nullptr);
+  EXPECT_EQ(*Load(3), *first);
+}
+
+TEST_F(LoadSceneTest, StopsBeforeThePhaseThatNobodyWants) {
+  EXPECT_EQ(ReasonOf(Load(0).status()), "STOPPED") << "before reading";
+  EXPECT_EQ(ReasonOf(Load(1).status()), "STOPPED") << "before building";
+  EXPECT_EQ(cache_.Get(hash_), nullptr);
+  EXPECT_EQ(ReasonOf(Load(2).status()), "STOPPED") << "before what follows";
+  EXPECT_NE(cache_.Get(hash_), nullptr) << "the next call need not begin anew";
+}
+
+}  // namespace
+}  // namespace flatlight
