@@ -31,7 +31,10 @@ std::string FolderOf(const std::string& path) {
   return folder.empty() ? "." : folder;
 }
 
-mode_t FileMode() {
+// Of the file that is there already, or else what the umask lets.
+mode_t FileMode(const std::string& target) {
+  struct stat info {};
+  if (stat(target.c_str(), &info) == 0) return info.st_mode & 0777;
   const mode_t mask = umask(0);
   umask(mask);
   return 0666 & ~mask;
@@ -63,7 +66,7 @@ absl::StatusOr<std::unique_ptr<AtomicFile>> AtomicFile::Create(const std::string
   std::string temporary = FolderOf(target) + "/.flatlight-XXXXXX";
   const int fd = mkostemp(temporary.data(), O_CLOEXEC);
   if (fd < 0) return LastError(path);
-  fchmod(fd, FileMode());
+  fchmod(fd, FileMode(target));
   return std::unique_ptr<AtomicFile>(new AtomicFile(path, target, temporary, fd));
 }
 

@@ -16,8 +16,9 @@ namespace flatlight {
 // is a regular file. Errors name the path and end with ExitCode::kOutput.
 absl::Status CheckWritable(const std::string& path);
 
-// A file under a temporary name in the folder of `path`, readable by whoever the umask lets. It takes its place on
-// Commit; it is gone if there is none. A symbolic link is followed, not replaced.
+// A file under a temporary name in the folder of `path`, with the permissions of the file that it replaces, or else
+// those that the umask lets. It takes its place on Commit; it is gone if there is none. A symbolic link is followed,
+// not replaced.
 class AtomicFile {
  public:
   static absl::StatusOr<std::unique_ptr<AtomicFile>> Create(const std::string& path);
