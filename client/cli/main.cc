@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // flatlight: the command line. Talks to a server and does nothing else with light.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <sstream>
 #include <string>
 
@@ -19,10 +21,11 @@ ExitCode Fail(const absl::Status& status) {
   return ExitCodeOf(status);
 }
 
-// What was said but could not be written counts, too.
-ExitCode Close(ExitCode code) {
-  if (code != ExitCode::kDone || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
-  return Fail(OutputError("standard output", std::strerror(errno)));
+// Gives standard streams that are closed a place that is empty and cannot be written to: or else the next file or
+// socket to be opened would take their number.
+void FillClosedStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0) open("/dev/null", O_RDONLY);
 }
 
 ExitCode Main(int argc, char** argv) {
@@ -34,13 +37,14 @@ ExitCode Main(int argc, char** argv) {
   }
   Interruption interruption;
   const CommandResult result = RunCommand(*line, interruption);
-  return result.ok() ? Close(*result) : Fail(result.status());
+  return result.ok() ? *result : Fail(result.status());
 }
 
 }  // namespace
 }  // namespace flatlight
 
 int main(int argc, char** argv) {
+  flatlight::FillClosedStreams();
   // Broken pipes and file size limits are errors of the write that meets them.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);

@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::uint64_t kMaxResultBytes = 2'000'000'000;  // Protobuf's own limit is 2 GiB.
 
-absl::StatusOr<v1::RenderResult> ReadResult(const std::string& path) {
+absl::StatusOr<v1::RenderResult> ReadResult(const std::string& path, const Interruption& interruption) {
   const std::string label = path == "-" ? "standard input" : Printable(path);
-  const auto bytes = ReadFile(path, label, kMaxResultBytes);
+  const auto bytes = ReadFile(path, label, kMaxResultBytes, interruption);
   if (!bytes.ok()) return bytes.status();
   return ResultFromJson(*bytes, label);
 }
@@ -59,10 +59,10 @@ std::string Json(const Comparison& comparison) {
 
 }  // namespace
 
-CommandResult CompareResults(const CommandLine& line, Interruption& /*interruption*/) {
-  const auto a = ReadResult(line.results[0]);
+CommandResult CompareResults(const CommandLine& line, Interruption& interruption) {
+  const auto a = ReadResult(line.results[0], interruption);
   if (!a.ok()) return a.status();
-  const auto b = ReadResult(line.results[1]);
+  const auto b = ReadResult(line.results[1], interruption);
   if (!b.ok()) return b.status();
   const auto comparison = Compare(*a, *b, line.tolerance);
   if (!comparison.ok()) return comparison.status();

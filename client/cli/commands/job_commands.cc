@@ -57,7 +57,10 @@ CommandResult Watch(const CommandLine& line, Interruption& interruption) {
   Console console(line.json ? Console::Answer::kMachine : Console::Answer::kText, line.quiet);
   WatchOptions options;
   options.max_rate = console.Rate();
-  options.on_update = [&console](const v1::Job& job) { console.Show(job); };
+  options.on_update = [&console](const v1::Job& job) {
+    console.Show(job);
+    return console.status();
+  };
   const auto job = WatchJob(connection, *name, options);
   console.EndProgress();
   if (!job.ok() && interruption.Requested())
@@ -68,6 +71,7 @@ CommandResult Watch(const CommandLine& line, Interruption& interruption) {
   if (absl::Status success = CheckSuccess(*job); !success.ok()) return success;
   const std::string reason = job->end_reason() == 0 ? "" : " (" + OptionName(job->end_reason()) + ")";
   console.Say(job->name() + " " + OptionName(job->state()) + reason + '\n');
+  if (absl::Status said = console.status(); !said.ok()) return said;
   return ExitCode::kDone;
 }
 
@@ -105,7 +109,8 @@ CommandResult Fetch(const CommandLine& line, Interruption& interruption) {
   const auto result = FetchResult((*session)->connection(), *name);
   if (!result.ok()) return result.status();
   Console console = ConsoleFor(*outputs, line.quiet);
-  if (absl::Status delivered = DeliverResult(*result, *outputs, console); !delivered.ok()) return delivered;
+  if (absl::Status delivered = DeliverResult(*result, *outputs, console, interruption); !delivered.ok())
+    return delivered;
   return ExitCode::kDone;
 }
 

@@ -25,14 +25,26 @@ absl::Status CancelAfterSignal(Session& session, const v1::Job& job) {
   return InterruptedError("interrupted; " + (session.is_private() ? "the job" : job.name()) + " is cancelled");
 }
 
+// What is said finds no reader any more (`| head`): the job ends too. A private server stops it anyhow.
+absl::Status CancelUnheard(Session& session, const v1::Job& job, const absl::Status& said) {
+  const auto cancelled = CancelJob(session.connection(), job.name());
+  if (cancelled.ok() || session.is_private()) return said;
+  return absl::Status(said.code(), std::string(said.message().data(), said.message().size()) + "\n" + job.name() +
+                                       " could not be cancelled: " + cancelled.status().ToString());
+}
+
 absl::StatusOr<v1::RenderResult> WaitForResult(Session& session, const v1::Job& job, Console& console) {
   WatchOptions options;
   options.max_rate = console.Rate();
-  options.on_update = [&console](const v1::Job& update) { console.Show(update); };
+  options.on_update = [&console](const v1::Job& update) {
+    console.Show(update);
+    return console.status();
+  };
   options.check_server = [&session] { return session.CheckServer(); };
   const auto ended = WatchJob(session.connection(), job.name(), options);
   console.EndProgress();
   if (session.connection().interruption().Requested()) return CancelAfterSignal(session, job);
+  if (absl::Status said = console.status(); !said.ok()) return CancelUnheard(session, job, said);
   if (!ended.ok()) return ended.status();
   if (absl::Status success = CheckSuccess(*ended); !success.ok()) return success;
   return FetchResult(session.connection(), job.name());
@@ -60,7 +72,8 @@ CommandResult Render(const CommandLine& line, Interruption& interruption) {
 
   const auto result = WaitForResult(**session, *job, console);
   if (!result.ok()) return (*session)->Explain(result.status());
-  if (absl::Status delivered = DeliverResult(*result, *outputs, console); !delivered.ok()) return delivered;
+  if (absl::Status delivered = DeliverResult(*result, *outputs, console, interruption); !delivered.ok())
+    return delivered;
   return ExitCode::kDone;
 }
 

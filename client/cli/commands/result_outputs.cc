@@ -27,11 +27,13 @@ Console ConsoleFor(const std::vector<Output>& outputs, bool quiet) {
   return {WritesToStandardOutput(outputs) ? Console::Answer::kMachine : Console::Answer::kText, quiet};
 }
 
-absl::Status DeliverResult(const v1::RenderResult& result, const std::vector<Output>& outputs, Console& console) {
+absl::Status DeliverResult(const v1::RenderResult& result, const std::vector<Output>& outputs, Console& console,
+                           const Interruption& interruption) {
   console.Say(ResultText(result));
-  if (absl::Status written = WriteOutputs(result, outputs); !written.ok()) return written;
+  const auto interrupted = [&interruption] { return interruption.Requested(); };
+  if (absl::Status written = WriteOutputs(result, outputs, interrupted); !written.ok()) return written;
   console.Say(WrittenText(outputs));
-  return absl::OkStatus();
+  return console.status();
 }
 
 }  // namespace flatlight

@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/cli/commands/console.h"
+#include "client/cli/connection/interruption.h"
 #include "client/cli/outputs/outputs.h"
 
 namespace flatlight {
@@ -18,8 +19,9 @@ absl::StatusOr<std::vector<Output>> OutputsOf(const std::vector<std::string>& pa
 // The console for a command that writes these.
 Console ConsoleFor(const std::vector<Output>& outputs, bool quiet);
 
-// Writes all outputs, and says what the result is like and what was written.
-absl::Status DeliverResult(const v1::RenderResult& result, const std::vector<Output>& outputs, Console& console);
+// Writes all outputs, unless interrupted, and says what the result is like and what was written.
+absl::Status DeliverResult(const v1::RenderResult& result, const std::vector<Output>& outputs, Console& console,
+                           const Interruption& interruption);
 
 }  // namespace flatlight
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SIGINT and SIGTERM as a flag that ends waiting calls.
+// SIGINT, SIGTERM and SIGHUP as a flag that ends waiting calls and reads.
 #ifndef FLATLIGHT_CLIENT_CLI_CONNECTION_INTERRUPTION_H_
 #define FLATLIGHT_CLIENT_CLI_CONNECTION_INTERRUPTION_H_
 
@@ -15,8 +15,8 @@ class ClientContext;
 namespace flatlight {
 
 // The first signal cancels the running call and sets the flag; the second ends the program at once with
-// ExitCode::kInterrupted. Make it before any other thread: it blocks both signals in the calling thread, and so in all
-// that follow.
+// ExitCode::kInterrupted. Make it before any other thread: it blocks the signals in the calling thread, and so in all
+// that follow. SIGHUP stays ignored where it is (nohup).
 class Interruption {
  public:
   Interruption();
@@ -25,6 +25,10 @@ class Interruption {
   Interruption& operator=(const Interruption&) = delete;
 
   bool Requested() const;
+
+  // Waits until `fd` can be read from without blocking (or has an end, or an error, to be read). False as soon as a
+  // signal comes.
+  bool AwaitReadable(int fd) const;
 
   // False as soon as a signal comes, true after the whole time.
   bool Sleep(std::chrono::milliseconds time);
@@ -40,6 +44,7 @@ class Interruption {
   bool requested_ = false;  // Guarded by mutex_, as is all below.
   bool ending_ = false;
   grpc::ClientContext* call_ = nullptr;
+  int event_;  // Can be read from once a signal has come.
   std::thread thread_;
 };
 

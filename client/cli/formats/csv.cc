@@ -16,7 +16,7 @@ std::string Quoted(const std::string& text) {
 
 }  // namespace
 
-std::string ResultToCsv(const v1::RenderResult& result) {
+std::string ResultToCsv(const v1::RenderResult& result, const std::function<bool()>& stop) {
   const std::vector<ResultColumn> columns = ResultColumnsOf(result);
   const int channels = ResultChannels(result);
   const auto width = [channels](const ResultColumn& column) { return column.spectral() ? channels : 1; };
@@ -30,6 +30,7 @@ std::string ResultToCsv(const v1::RenderResult& result) {
   for (const v1::ProbeResult& probe : result.probes()) {
     const std::string name = Quoted(probe.name());
     for (int point = 0; point < static_cast<int>(probe.count()); ++point) {
+      if (point % kPointsBetweenStops == 0 && stop()) return csv;
       csv += name + ',' + std::to_string(point);
       for (const ResultColumn& column : columns)
         for (int channel = 0; channel < width(column); ++channel) {

@@ -3,6 +3,7 @@
 #ifndef FLATLIGHT_CLIENT_CLI_FORMATS_CSV_H_
 #define FLATLIGHT_CLIENT_CLI_FORMATS_CSV_H_
 
+#include <functional>
 #include <string>
 
 #include "flatlight/v1/result.pb.h"
@@ -12,7 +13,8 @@ namespace flatlight {
 // Columns: probe (name), index (from 0 in each probe), then those of AllResultColumns() that the result has. A coloured
 // result has irradianceR, irradianceG, irradianceB instead of irradiance, and so on. Numbers have the digits they need
 // to be read back exactly; what a probe does not have is empty.
-std::string ResultToCsv(const v1::RenderResult& result);
+// Ends early, with what is there, when `stop` says so; it is asked every few thousand points.
+std::string ResultToCsv(const v1::RenderResult& result, const std::function<bool()>& stop);
 
 }  // namespace flatlight
 

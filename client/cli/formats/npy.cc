@@ -33,7 +33,7 @@ std::string Header(const std::string& fields, std::size_t rows) {
 
 }  // namespace
 
-std::string ResultToNpy(const v1::RenderResult& result) {
+std::string ResultToNpy(const v1::RenderResult& result, const std::function<bool()>& stop) {
   const std::vector<ResultColumn> columns = ResultColumnsOf(result);
   const int channels = ResultChannels(result);
   std::string fields = "('probe', '<i4'), ('index', '<i4')";
@@ -46,6 +46,7 @@ std::string ResultToNpy(const v1::RenderResult& result) {
   for (int number = 0; number < result.probes_size(); ++number) {
     const v1::ProbeResult& probe = result.probes(number);
     for (int point = 0; point < static_cast<int>(probe.count()); ++point) {
+      if (point % kPointsBetweenStops == 0 && stop()) return npy;
       Append(static_cast<std::int32_t>(number), npy);
       Append(static_cast<std::int32_t>(point), npy);
       for (const ResultColumn& column : columns)

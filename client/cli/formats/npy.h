@@ -3,6 +3,7 @@
 #ifndef FLATLIGHT_CLIENT_CLI_FORMATS_NPY_H_
 #define FLATLIGHT_CLIENT_CLI_FORMATS_NPY_H_
 
+#include <functional>
 #include <string>
 
 #include "flatlight/v1/result.pb.h"
@@ -12,7 +13,8 @@ namespace flatlight {
 // A one-dimensional structured array with an element a point, probe after probe. Fields: probe (int32: number of the
 // probe, from 0), index (int32), then those of AllResultColumns() that the result has, as float64; spectral ones have
 // shape (3,) in a coloured result. What a probe does not have is NaN.
-std::string ResultToNpy(const v1::RenderResult& result);
+// Ends early, with what is there, when `stop` says so; it is asked every few thousand points.
+std::string ResultToNpy(const v1::RenderResult& result, const std::function<bool()>& stop);
 
 }  // namespace flatlight
 

@@ -10,6 +10,9 @@
 
 namespace flatlight {
 
+// How often a writer of a long table asks whether to stop.
+inline constexpr int kPointsBetweenStops = 4096;
+
 using DoubleArray = google::protobuf::RepeatedField<double>;
 
 struct ResultColumn {

@@ -41,6 +41,7 @@ class Watch {
   absl::StatusOr<v1::Job> Run() {
     for (;;) {
       const grpc::Status status = ReadStream();
+      if (!unwanted_.ok()) return unwanted_;
       if (HasEnded(job_.state())) return job_;
       if (connection_.interruption().Requested()) return InterruptedError("interrupted");
       if (status.error_code() == grpc::StatusCode::NOT_FOUND && heard_anything_)
@@ -59,7 +60,7 @@ class Watch {
     v1::WatchJobResponse message;
     while (stream.Next(message, options_.silence)) {
       Take(message);
-      if (HasEnded(job_.state())) return grpc::Status::OK;
+      if (HasEnded(job_.state()) || !unwanted_.ok()) return grpc::Status::OK;
     }
     return stream.Finish();
   }
@@ -81,7 +82,7 @@ class Watch {
       *job.mutable_plan() = job_.plan();
     }
     job_ = std::move(job);
-    if (options_.on_update) options_.on_update(job_);
+    if (options_.on_update) unwanted_ = options_.on_update(job_);
   }
 
   absl::Status WaitForNextTry(const grpc::Status& status) {
@@ -100,6 +101,7 @@ class Watch {
   const WatchOptions& options_;
   v1::WatchJobRequest request_;
   v1::Job job_;
+  absl::Status unwanted_;  // Why no more updates are wanted.
   bool heard_anything_ = false;
   int failures_ = 0;
   steady_clock::time_point last_message_ = steady_clock::now();

@@ -17,8 +17,9 @@ struct WatchOptions {
   // A stream that breaks is taken up again where it ended, for as long as no more than this passes without a message.
   std::chrono::milliseconds patience = std::chrono::seconds(30);
   std::chrono::milliseconds silence = std::chrono::seconds(25);  // Heartbeats come every 10 s.
-  std::function<void(const v1::Job&)> on_update;                 // With the newest state, never going back.
-  std::function<absl::Status()> check_server;  // Asked before every new try; an error ends the watch. May be empty.
+  // With the newest state, never going back; an error ends the watch. May be empty, as the next.
+  std::function<absl::Status(const v1::Job&)> on_update;
+  std::function<absl::Status()> check_server;  // Asked before every new try; an error ends the watch.
 };
 
 bool HasEnded(v1::Job::State state);

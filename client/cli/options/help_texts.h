@@ -30,7 +30,7 @@ inline constexpr char kRenderHelp[] = R"(The ending of OUT picks its form:
   .svg .png    a plot: irradiance over arc length with a band of two standard errors, derivatives below (needs gnuplot)
   .exr .hdr    pictures of irradiance, a pixel a point; .exr has a part for each probe, .hdr a row
 Files are written under a temporary name and then renamed, so they are there whole or not at all.
-Ctrl-C cancels the job.
+Ctrl-C cancels the job, and so does a reader of standard output that goes away (`| head`).
 
 Examples:
   flatlight render scene.json --samples 4096 -o result.json -o plot.png

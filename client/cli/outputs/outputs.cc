@@ -58,12 +58,13 @@ absl::StatusOr<std::string> Pictures(const v1::RenderResult& result, const std::
   return PictureBytes(ending, pictures);
 }
 
-absl::StatusOr<std::string> Bytes(const v1::RenderResult& result, OutputForm form) {
+absl::StatusOr<std::string> Bytes(const v1::RenderResult& result, OutputForm form,
+                                  const std::function<bool()>& interrupted) {
   switch (form) {
     case OutputForm::kCsv:
-      return ResultToCsv(result);
+      return ResultToCsv(result, interrupted);
     case OutputForm::kNpy:
-      return ResultToNpy(result);
+      return ResultToNpy(result, interrupted);
     case OutputForm::kSvg:
       return RunGnuplot(PlotScript(result, PlotForm::kSvg));
     case OutputForm::kPng:
@@ -77,8 +78,12 @@ absl::StatusOr<std::string> Bytes(const v1::RenderResult& result, OutputForm for
   }
 }
 
-absl::Status WriteOutput(const v1::RenderResult& result, const Output& output) {
-  const absl::StatusOr<std::string> bytes = Bytes(result, output.form);
+absl::Status WriteOutput(const v1::RenderResult& result, const Output& output,
+                         const std::function<bool()>& interrupted) {
+  const absl::Status stopped = InterruptedError("interrupted before " + output.path + " was written");
+  if (interrupted()) return stopped;
+  const absl::StatusOr<std::string> bytes = Bytes(result, output.form, interrupted);
+  if (interrupted()) return stopped;
   if (!bytes.ok()) return OutputError(output.path, Reason(bytes.status()));
   return output.path == "-" ? PrintBytes(*bytes) : WriteFileAtomically(output.path, *bytes);
 }
@@ -115,10 +120,13 @@ bool WritesToStandardOutput(const std::vector<Output>& outputs) {
   return std::any_of(outputs.begin(), outputs.end(), [](const Output& output) { return output.path == "-"; });
 }
 
-absl::Status WriteOutputs(const v1::RenderResult& result, const std::vector<Output>& outputs) {
+absl::Status WriteOutputs(const v1::RenderResult& result, const std::vector<Output>& outputs,
+                          const std::function<bool()>& interrupted) {
   std::string failures;
   for (const Output& output : outputs) {
-    const absl::Status status = WriteOutput(result, output);
+    const absl::Status status = WriteOutput(result, output, interrupted);
+    if (status.code() == absl::StatusCode::kCancelled)
+      return InterruptedError(failures + (failures.empty() ? "" : "\n") + Reason(status));
     if (!status.ok()) failures += (failures.empty() ? "" : "\n") + Reason(status);
   }
   return failures.empty() ? absl::OkStatus() : absl::DataLossError(failures);

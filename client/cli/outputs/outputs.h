@@ -3,6 +3,7 @@
 #ifndef FLATLIGHT_CLIENT_CLI_OUTPUTS_OUTPUTS_H_
 #define FLATLIGHT_CLIENT_CLI_OUTPUTS_OUTPUTS_H_
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,10 @@ absl::StatusOr<std::vector<Output>> PlanOutputs(const std::vector<std::string>& 
 bool WritesToStandardOutput(const std::vector<Output>& outputs);
 
 // Each file is there whole or not at all. Goes on after a failure, so that the rest of the work is not lost; the error
-// then has a line for each failure.
-absl::Status WriteOutputs(const v1::RenderResult& result, const std::vector<Output>& outputs);
+// then has a line for each failure. As soon as `interrupted` says so, nothing more is written, and the error ends with
+// ExitCode::kInterrupted; files that were there by then stay.
+absl::Status WriteOutputs(const v1::RenderResult& result, const std::vector<Output>& outputs,
+                          const std::function<bool()>& interrupted);
 
 // To standard output, at once.
 absl::Status PrintBytes(const std::string& bytes);

@@ -27,7 +27,8 @@ absl::Status LastError(const std::string& label) {
   return UsageError(label + " cannot be read: " + std::strerror(errno));
 }
 
-absl::StatusOr<std::string> ReadAll(int fd, const std::string& label, std::uint64_t limit) {
+absl::StatusOr<std::string> ReadAll(int fd, const std::string& label, std::uint64_t limit,
+                                    const Interruption& interruption) {
   struct stat info {};
   if (fstat(fd, &info) != 0) return LastError(label);
   if (S_ISDIR(info.st_mode)) return UsageError(label + " is a folder, not a file");
@@ -38,10 +39,11 @@ absl::StatusOr<std::string> ReadAll(int fd, const std::string& label, std::uint6
     bytes.reserve(size + kChunk);
   }
   for (;;) {
+    if (!interruption.AwaitReadable(fd)) return InterruptedError("interrupted");
     const std::size_t old_size = bytes.size();
     bytes.resize(old_size + kChunk);
     const ssize_t n = read(fd, bytes.data() + old_size, kChunk);
-    if (n < 0 && errno != EINTR) return LastError(label);
+    if (n < 0 && errno != EINTR && errno != EAGAIN) return LastError(label);
     bytes.resize(old_size + static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
     if (bytes.size() > limit) return TooLong(label, "more than " + FormatBytes(static_cast<double>(limit)), limit);
     if (n == 0) break;
@@ -70,11 +72,13 @@ absl::Status CheckSceneFile(const SceneArgument& scene) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::string> ReadFile(const std::string& path, const std::string& label, std::uint64_t limit) {
-  if (path == "-") return ReadAll(STDIN_FILENO, label, limit);
-  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+absl::StatusOr<std::string> ReadFile(const std::string& path, const std::string& label, std::uint64_t limit,
+                                     const Interruption& interruption) {
+  if (path == "-") return ReadAll(STDIN_FILENO, label, limit, interruption);
+  // Not to wait in open for a FIFO's writer: the first read awaits it.
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) return LastError(label);
-  absl::StatusOr<std::string> bytes = ReadAll(fd, label, limit);
+  absl::StatusOr<std::string> bytes = ReadAll(fd, label, limit, interruption);
   close(fd);
   return bytes;
 }

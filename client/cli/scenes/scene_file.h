@@ -8,6 +8,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "client/cli/connection/interruption.h"
 
 namespace flatlight {
 
@@ -25,8 +26,10 @@ absl::StatusOr<SceneArgument> ParseSceneArgument(const std::string& text);
 absl::Status CheckSceneFile(const SceneArgument& scene);
 
 // The bytes of a file ("-" is standard input) that has at most `limit`. A longer one is refused before it is read (a
-// pipe: when the limit is passed). `label` names it in errors.
-absl::StatusOr<std::string> ReadFile(const std::string& path, const std::string& label, std::uint64_t limit);
+// pipe: when the limit is passed). `label` names it in errors. INTERRUPTED as soon as a signal comes, also while
+// nothing comes from a pipe or a terminal.
+absl::StatusOr<std::string> ReadFile(const std::string& path, const std::string& label, std::uint64_t limit,
+                                     const Interruption& interruption);
 
 }  // namespace flatlight
 

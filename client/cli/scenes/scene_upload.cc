@@ -83,7 +83,8 @@ absl::StatusOr<v1::SceneSource> ProvideScene(Connection& connection, const Scene
     source.set_name(scene.name);
     return source;
   }
-  const auto bytes = ReadFile(scene.path, scene.label, connection.capabilities().limits().max_scene_bytes());
+  const auto bytes = ReadFile(scene.path, scene.label, connection.capabilities().limits().max_scene_bytes(),
+                              connection.interruption());
   if (!bytes.ok()) return bytes.status();
   const auto name = Upload(connection, *bytes);
   if (!name.ok()) return name.status();

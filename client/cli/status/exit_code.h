@@ -17,7 +17,7 @@ enum class ExitCode : int {
   kDenied = 4,        // Not allowed, or over quota.
   kOutput = 5,        // An output could not be written.
   kDiffers = 10,      // `compare` found a difference.
-  kInterrupted = 130  // By SIGINT or SIGTERM.
+  kInterrupted = 130  // By SIGINT, SIGTERM or SIGHUP.
 };
 
 ExitCode ExitCodeOf(const absl::Status& status);

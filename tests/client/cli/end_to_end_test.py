@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 sys.path.insert(0, __file__.rsplit("/", 2)[0])
 from daemon import Daemon
@@ -90,6 +91,53 @@ class EndToEnd(unittest.TestCase):
         values = [row[column] for row in struct.iter_unpack(form, data[10 + length:])]
         self.assertEqual(header["shape"], (len(values),))
         return values
+
+    def test_pictures_of_probes_of_different_sizes(self):
+        scene = json.loads(self.run_cli("scenes", "unit-light").stdout)
+        scene["probes"] = [{**scene["probes"][0], "name": f"p{count}", "count": count} for count in (3, 5)]
+        name = self.write("two.json", json.dumps(scene))
+        self.run_cli("render", name, "--method", "exact", "-o", "r.exr", "-o", "r.hdr", "-o", "r.json")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["r.exr", "r.hdr", "r.json", "tmp", "two.json"])
+        with open(self.path("r.json")) as file:
+            probes = json.load(file)["probes"]
+        with open(self.path("r.exr"), "rb") as file:
+            parts, rows = self.read_exr(file.read())
+        self.assertEqual([struct.unpack("<4i", part["displayWindow"]) for part in parts], [(0, 0, 4, 0)] * 2)
+        self.assertEqual([struct.unpack("<4i", part["dataWindow"]) for part in parts], [(0, 0, 2, 0), (0, 0, 4, 0)])
+        for part, row, probe in zip(parts, rows, probes):
+            self.assertEqual(part["name"].decode(), probe["name"])
+            self.assertEqual(row, struct.unpack(f"<{len(row)}f", struct.pack(f"<{len(row)}f", *probe["irradiance"])))
+
+    def read_exr(self, data):
+        """The attributes of each part of a multi-part OpenEXR file, and its pixels: one row of one channel of floats."""
+        parts, at = [], 8
+        def text():
+            nonlocal at
+            end = data.index(b"\0", at)
+            piece, at = data[at:end].decode(), end + 1
+            return piece
+        while data[at]:
+            part = {}
+            while name := text():
+                text()  # The type.
+                size = struct.unpack_from("<i", data, at)[0]
+                part[name] = data[at + 4:at + 4 + size]
+                at += 4 + size
+            parts.append(part)
+        rows = []
+        for number, part in enumerate(parts):
+            left, _, right, _ = struct.unpack("<4i", part["dataWindow"])
+            chunk = struct.unpack_from("<Q", data, at + 1 + 8 * number)[0]  # Each part has one chunk.
+            owner, _, size = struct.unpack_from("<iii", data, chunk)
+            self.assertEqual(owner, number)
+            packed, width = data[chunk + 12:chunk + 12 + size], right - left + 1
+            if size < 4 * width:  # Else it is stored as it is.
+                deltas = zlib.decompress(packed)
+                halves = [sum(deltas[:i + 1]) - 128 * i & 255 for i in range(len(deltas))]
+                middle = (len(halves) + 1) // 2
+                packed = bytes(halves[i // 2 + (middle if i % 2 else 0)] for i in range(len(halves)))
+            rows.append(struct.unpack(f"<{width}f", packed))
+        return parts, rows
 
     def test_standard_output_is_for_machines(self):
         for arguments in (["-o", "-"], ["--json"], ["-o", "-", "--json", "--quiet"]):
@@ -205,12 +253,28 @@ class EndToEnd(unittest.TestCase):
         self.assertFalse(os.path.exists(self.path("r.csv")))
 
     def test_standard_output_that_is_full(self):
-        for arguments in (["scenes"], ["render", "gallery:unit-light", "--method", "exact", "-o", "-"]):
+        render = ["render", "gallery:unit-light", "--method", "exact"]
+        for arguments in (["scenes"], render, [*render, "-o", "-"]):
             with open("/dev/full", "w") as full:
                 run = subprocess.run([FLATLIGHT, *arguments], stdout=full, stderr=subprocess.PIPE, text=True, timeout=90,
                                      env=self.environment)
             self.assertEqual(run.returncode, 5, run.stderr)
             self.assertIn("standard output could not be written: No space left", run.stderr)
+
+    def test_standard_output_that_is_closed(self):
+        for arguments in (["scenes"], ["render", "gallery:unit-light", "--method", "exact"]):
+            run = self.run_cli(*arguments, status=5, preexec_fn=lambda: os.close(1))
+            self.assertEqual(run.stderr, "flatlight: standard output could not be written: Bad file descriptor\n")
+
+    def test_a_reader_that_goes_away_ends_the_job(self):
+        with Daemon(FLATLIGHTD) as daemon:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            process = self.start("render", *ENDLESS)
+            job = re.search(r"jobs/\S+", self.read_until(process.stdout, "job  ")).group()
+            process.stdout.close()
+            self.assertEqual(process.wait(timeout=30), 5)
+            self.assertEqual(process.stderr.read(), "flatlight: standard output could not be written: Broken pipe\n")
+            self.assertEqual(json.loads(self.run_cli("show", job, "--json").stdout)["state"], "CANCELLED")
 
     # --- servers
 
@@ -264,9 +328,10 @@ class EndToEnd(unittest.TestCase):
 
     # --- signals
 
-    def start(self, *arguments):
+    def start(self, *arguments, hang_up=signal.SIG_DFL, **options):
         process = subprocess.Popen([FLATLIGHT, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                   env=self.environment, cwd=self.folder)
+                                   env=self.environment, cwd=self.folder,
+                                   preexec_fn=lambda: signal.signal(signal.SIGHUP, hang_up), **options)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.kill)
@@ -281,7 +346,7 @@ class EndToEnd(unittest.TestCase):
     def test_ctrl_c_cancels_the_job(self):
         with Daemon(FLATLIGHTD) as daemon:
             self.environment["FLATLIGHT_SERVER"] = daemon.address
-            for sent in (signal.SIGINT, signal.SIGTERM):
+            for sent in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 process = self.start("render", *ENDLESS, "-o", "r.json")
                 job = re.search(r"jobs/\S+", self.read_until(process.stdout, "job  ")).group()
                 self.read_until(process.stdout, " %")
@@ -293,13 +358,41 @@ class EndToEnd(unittest.TestCase):
         self.assert_no_leftovers()
 
     def test_ctrl_c_ends_a_private_server(self):
-        process = self.start("render", *ENDLESS)
+        for sent in (signal.SIGINT, signal.SIGHUP):
+            process = self.start("render", *ENDLESS)
+            self.read_until(process.stdout, " %")
+            server = self.private_server(process.pid)
+            process.send_signal(sent)
+            self.assertEqual(process.wait(timeout=30), 130)
+            self.assertFalse(os.path.exists(f"/proc/{server}"))
+            self.assertEqual(os.listdir(self.temporary), [])
+
+    def test_nohup(self):
+        process = self.start("render", *ENDLESS, hang_up=signal.SIG_IGN)
         self.read_until(process.stdout, " %")
-        server = self.private_server(process.pid)
+        process.send_signal(signal.SIGHUP)
+        self.read_until(process.stdout, " %")
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=30), 130)
-        self.assertFalse(os.path.exists(f"/proc/{server}"))
-        self.assertEqual(os.listdir(self.temporary), [])
+
+    def test_ctrl_c_ends_the_wait_for_input(self):
+        os.mkfifo(self.path("fifo"))
+        result = self.run_cli("render", "gallery:unit-light", "--method", "exact", "-o", "-").stdout
+        self.write("r.json", result)
+        for arguments in (["render", "-"], ["validate", "fifo"], ["compare", "-", "r.json"]):
+            process = self.start(*arguments, stdin=subprocess.PIPE)
+            self.addCleanup(process.stdin.close)
+            with open(f"/proc/{process.pid}/status") as status:  # A signal before it is caught would end it otherwise.
+                while not self.blocks(status, signal.SIGINT):
+                    os.sched_yield()
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(timeout=30), 130, arguments)
+            self.assertEqual(process.stderr.read(), "flatlight: interrupted\n")
+            self.assertEqual(os.listdir(self.temporary), [])
+
+    def blocks(self, status, number):
+        status.seek(0)
+        return int(re.search(r"SigBlk:\s*(\w+)", status.read()).group(1), 16) >> (number - 1) & 1
 
     def private_server(self, pid):
         with open(f"/proc/{pid}/task/{pid}/children") as children:

@@ -82,7 +82,7 @@ TEST(Csv, HasOnlyTheColumnsThatExist) {
   v1::ProbeResult& free = AddProbe(result, "free", 1);
   free.clear_arc_length();
   free.add_standard_error(0.25);
-  EXPECT_EQ(ResultToCsv(result),
+  EXPECT_EQ(ResultToCsv(result, [] { return false; }),
             "probe,index,x,y,nx,ny,arcLength,irradiance,standardError\n"
             "\"a, \"\"b\"\"\",0,0,0,0,1,0.5,1,\n"
             "\"a, \"\"b\"\"\",1,1,0,0,1,1.5,0.5,\n"
@@ -92,7 +92,7 @@ TEST(Csv, HasOnlyTheColumnsThatExist) {
 TEST(Csv, ColourHasThreeColumns) {
   v1::RenderResult result;
   AddProbe(result, "p", 1, 3);
-  EXPECT_EQ(ResultToCsv(result),
+  EXPECT_EQ(ResultToCsv(result, [] { return false; }),
             "probe,index,x,y,nx,ny,arcLength,irradianceR,irradianceG,irradianceB\n"
             "p,0,0,0,0,1,0.5,1,0.5,0.3333333333333333\n");
 }
@@ -101,7 +101,7 @@ TEST(Npy, HeaderIsAlignedAndRowsFollow) {
   v1::RenderResult result;
   AddProbe(result, "p", 2, 3);
   AddProbe(result, "q", 1, 3).clear_arc_length();
-  const std::string npy = ResultToNpy(result);
+  const std::string npy = ResultToNpy(result, [] { return false; });
   ASSERT_EQ(npy.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
   const std::size_t data = 10 + static_cast<unsigned char>(npy[8]) + 256U * static_cast<unsigned char>(npy[9]);
   EXPECT_EQ(data % 64, 0U);

@@ -79,7 +79,10 @@ class WatchTest : public ::testing::Test {
     auto connection = Connection::Open(*address, "", interruption_);
     ASSERT_TRUE(connection.ok()) << connection.status();
     connection_ = *std::move(connection);
-    options_.on_update = [this](const v1::Job& job) { updates_.push_back(job); };
+    options_.on_update = [this](const v1::Job& job) {
+      updates_.push_back(job);
+      return absl::OkStatus();
+    };
   }
 
   Interruption interruption_;  // Before the server's threads, which would take its signals.
@@ -156,9 +159,23 @@ TEST_F(WatchTest, ASignalEndsTheWatch) {
     while (!context->IsCancelled()) std::this_thread::yield();
     return Status::CANCELLED;
   }};
-  options_.on_update = [](const v1::Job&) { kill(getpid(), SIGINT); };
+  options_.on_update = [](const v1::Job&) {
+    kill(getpid(), SIGINT);
+    return absl::OkStatus();
+  };
   EXPECT_EQ(WatchJob(*connection_, "jobs/x", options_).status().code(), absl::StatusCode::kCancelled);
   EXPECT_TRUE(interruption_.Requested());
+}
+
+TEST_F(WatchTest, AnUnwantedUpdateEndsTheWatch) {
+  service_.scripts_ = {[](ServerContext* context, Scripted::Writer* writer) {
+    writer->Write(Update(1, v1::Job::RUNNING, 0));
+    while (!context->IsCancelled()) std::this_thread::yield();
+    return Status::CANCELLED;
+  }};
+  options_.on_update = [](const v1::Job&) { return absl::DataLossError("nobody reads"); };
+  EXPECT_EQ(WatchJob(*connection_, "jobs/x", options_).status(), absl::DataLossError("nobody reads"));
+  EXPECT_EQ(service_.cursors_.size(), 1U);
 }
 
 TEST_F(WatchTest, AResultThatIsCutShortIsNoResult) {

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -62,6 +63,20 @@ TEST_F(OutputsTest, AFileIsThereWholeAfterCommit) {
   EXPECT_EQ(info.st_mode & 0777, 0666 & ~mask);
 }
 
+TEST_F(OutputsTest, AFileKeepsItsPermissions) {
+  std::ofstream(Path("a")) << "old";
+  for (const mode_t mode : {0600U, 0664U}) {
+    ASSERT_EQ(chmod(Path("a").c_str(), mode), 0);
+    ASSERT_TRUE(WriteFileAtomically(Path("a"), "new").ok());
+    struct stat info {};
+    ASSERT_EQ(stat(Path("a").c_str(), &info), 0);
+    EXPECT_EQ(info.st_mode & 0777, mode);
+  }
+  ASSERT_EQ(chmod(Path("a").c_str(), 0400), 0);
+  // Root may write to it all the same.
+  EXPECT_EQ(WriteFileAtomically(Path("a"), "newer").ok(), access(Path("a").c_str(), W_OK) == 0);
+}
+
 TEST_F(OutputsTest, ALinkIsFollowed) {
   std::ofstream(Path("target")) << "old";
   fs::create_symlink("target", Path("link"));
@@ -110,8 +125,36 @@ TEST_F(OutputsTest, OneFailureDoesNotLoseTheRest) {
   v1::RenderResult result;
   result.set_scene("s");
   const std::vector<Output> outputs = {{Path("no/a.json"), OutputForm::kJson}, {Path("b.json"), OutputForm::kJson}};
-  EXPECT_THAT(Message(WriteOutputs(result, outputs)), HasSubstr("a.json"));
+  EXPECT_THAT(Message(WriteOutputs(result, outputs, [] { return false; })), HasSubstr("a.json"));
   EXPECT_THAT(Read(Path("b.json")), HasSubstr("\"scene\": \"s\""));
+}
+
+TEST_F(OutputsTest, AnInterruptionEndsTheWriting) {
+  v1::RenderResult result;
+  v1::ProbeResult& probe = *result.add_probes();
+  constexpr int kPoints = 20000;
+  probe.set_count(kPoints);
+  probe.set_channels(1);
+  for (int i = 0; i < kPoints; ++i) probe.add_irradiance(i);
+  const std::vector<Output> outputs = {{Path("a.csv"), OutputForm::kCsv}, {Path("b.npy"), OutputForm::kNpy}};
+  int asked = 0, last = 0;
+  const auto interrupted = [&asked, &last] { return ++asked >= last; };
+  last = 1 << 30;
+  ASSERT_TRUE(WriteOutputs(result, outputs, interrupted).ok());
+  const int all = asked;
+  EXPECT_GT(all, 2 * (kPoints / 5000));
+  std::ptrdiff_t most = 0;
+  for (last = 1; last <= all; ++last) {
+    for (const Output& output : outputs) fs::remove(output.path);
+    asked = 0;
+    const absl::Status status = WriteOutputs(result, outputs, interrupted);
+    EXPECT_EQ(status.code(), absl::StatusCode::kCancelled);
+    EXPECT_FALSE(fs::exists(Path("b.npy")));
+    EXPECT_EQ(FileCount(), fs::exists(Path("a.csv")) ? 1 : 0);  // No temporaries.
+    most = std::max(most, FileCount());
+    EXPECT_LE(asked, last + 1) << "it goes on";
+  }
+  EXPECT_EQ(most, 1);
 }
 
 TEST(Pictures, RowsAreStackedInColour) {
