@@ -80,7 +80,7 @@ absl::StatusOr<std::string> Bytes(const v1::RenderResult& result, OutputForm for
 
 absl::Status WriteOutput(const v1::RenderResult& result, const Output& output,
                          const std::function<bool()>& interrupted) {
-  const absl::Status stopped = InterruptedError("interrupted before " + output.path + " was written");
+  absl::Status stopped = InterruptedError("interrupted before " + output.path + " was written");
   if (interrupted()) return stopped;
   const absl::StatusOr<std::string> bytes = Bytes(result, output.form, interrupted);
   if (interrupted()) return stopped;
