@@ -253,7 +253,8 @@ TEST_F(WatchTest, ASlowReaderGetsFewerAndNewerMessages) {
     }
     return message.sequence() >= newest.sequence();
   });
-  EXPECT_LE(states_between, 2u) << "states that nobody waits for any more were not kept for it";
+  // A queue would bring all 20; the connection's buffers may have taken in a few before they were full.
+  EXPECT_LE(states_between, 10u) << "states that nobody waits for any more were kept for it";
   slow.Cancel();
 }
 
