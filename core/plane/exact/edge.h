@@ -3,6 +3,8 @@
 #ifndef FLATLIGHT_CORE_PLANE_EXACT_EDGE_H_
 #define FLATLIGHT_CORE_PLANE_EXACT_EDGE_H_
 
+#include <cmath>
+
 #include "core/math/vec.h"
 #include "core/scene/scene.h"
 
@@ -27,6 +29,19 @@ struct Edge {
   Point2 point;  // Not at the horizon.
 
   double Distance() const { return 1 / q; }
+};
+
+// The unit direction of a key, in the receiver's components.
+struct UnitDirection {
+  double tangent;
+  double normal;
+
+  explicit UnitDirection(double key) {
+    const double n = 1 - std::abs(key);
+    const double length = std::sqrt(key * key + n * n);
+    tangent = key / length;
+    normal = n / length;
+  }
 };
 
 Edge VertexEdge(const Receiver& receiver, Point2 point);

@@ -14,16 +14,6 @@ constexpr double kKeyMargin = 1e-10;
 constexpr double kDepthMargin = 1e-10;
 constexpr double kLengthMargin = 1e-13;
 
-// The unit direction of a key.
-struct Direction {
-  double tangent, normal;
-  explicit Direction(double key) {
-    const double n = 1 - std::abs(key);
-    const double length = std::sqrt(key * key + n * n);
-    tangent = key / length, normal = n / length;
-  }
-};
-
 // The keys that a box may cover above the horizon, and its distance.
 struct BoxView {
   double low = 1, high = -1, distance = 0;
@@ -117,7 +107,7 @@ void Gatherer::Cover(const Part& part, const Receiver& receiver) {
   if (!(low < high)) return;
   const Element& element = scene_.element(part.element);
   const auto distance_at = [&](double key) {
-    const Direction direction(key);
+    const UnitDirection direction(key);
     return DistanceAlong(element, part, receiver, direction.tangent, direction.normal);
   };
   // Between two directions a straight or hollow-free part is no farther than at the farther end; a hollow one may be,

@@ -14,15 +14,6 @@ namespace {
 // Two distances that differ by less are equal: curves that touch.
 bool Nearer(double r1, double r2, double coordinate_error) { return r1 < r2 - 1e-12 * r2 - 8 * coordinate_error; }
 
-struct UnitDirection {
-  double tangent, normal;
-  explicit UnitDirection(double key) {
-    const double n = 1 - std::abs(key);
-    const double length = std::sqrt(key * key + n * n);
-    tangent = key / length, normal = n / length;
-  }
-};
-
 // Distances that agree to this, relative, may be those of curves that meet; they are compared again so far aside (a
 // key).
 constexpr double kTie = 1e-11;
