@@ -3,129 +3,273 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <cmath>
+#include <limits>
+#include <span>
 
 namespace flatlight {
 namespace {
 
-constexpr std::uint32_t kLeafSize = 4;
+constexpr std::size_t kWidth = BvhNode::kWidth;
 constexpr std::size_t kBins = 16;
+// In smaller frames the rounding of doubles would show.
+constexpr double kLeastFrame = 0x1p-28;
 
-Point2 Middle(const Box& box) { return {0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y)}; }
+struct Item {
+  Box box;
+  std::uint32_t element = 0;
+
+  // Twice the middle, of which only differences matter.
+  Point2 Middle() const { return {box.low.x + box.high.x, box.low.y + box.high.y}; }
+};
+using Items = std::span<Item>;
 
 double Along(Point2 p, int axis) { return axis == 0 ? p.x : p.y; }
 
+// Items and what is known of them.
+struct Group {
+  Items items;
+  Box box;
+  Box middles;
+};
+
+// Leaves are tested whole.
+double Leaves(std::size_t count) { return static_cast<double>((count + kWidth - 1) / kWidth); }
+
+struct Bin {
+  Box box;
+  Box middles;
+  std::size_t count = 0;
+
+  void Add(const Bin& other) {
+    box.Add(other.box);
+    middles.Add(other.middles);
+    count += other.count;
+  }
+  double Cost() const { return count == 0 ? 0 : box.HalfPerimeter() * Leaves(count); }
+};
+
+Bin BinOf(Items items) {
+  Bin bin;
+  for (const Item& item : items) {
+    bin.box.Add(item.box);
+    bin.middles.Add(item.Middle());
+  }
+  bin.count = items.size();
+  return bin;
+}
+
+// Splits a group in two, of which it becomes the first: with the least surface area cost (MacDonald and Booth 1990),
+// over bins of equal width along the longer axis (Wald 2007).
+Group SplitOff(Group& group) {
+  const Box& middles = group.middles;
+  const int axis = middles.high.x - middles.low.x >= middles.high.y - middles.low.y ? 0 : 1;
+  const double low = Along(middles.low, axis), width = Along(middles.high, axis) - low;
+  const double bins_per_length = kBins / width;
+  const auto bin_of = [&](const Item& item) {
+    return std::min(kBins - 1, static_cast<std::size_t>((Along(item.Middle(), axis) - low) * bins_per_length));
+  };
+  std::array<Bin, kBins> bins;
+  for (const Item& item : group.items) {
+    Bin& bin = bins[bin_of(item)];
+    bin.box.Add(item.box);
+    bin.middles.Add(item.Middle());
+    ++bin.count;
+  }
+  std::array<Bin, kBins> right;  // All from a bin on.
+  right[kBins - 1] = bins[kBins - 1];
+  for (std::size_t b = kBins - 1; b-- > 0;) {
+    right[b] = right[b + 1];
+    right[b].Add(bins[b]);
+  }
+  Bin left, best_left;
+  double best = std::numeric_limits<double>::infinity();
+  std::size_t split = 1;
+  for (std::size_t b = 0; b + 1 < kBins; ++b) {
+    left.Add(bins[b]);
+    if (left.count == 0 || right[b + 1].count == 0) continue;
+    const double cost = left.Cost() + right[b + 1].Cost();
+    if (cost < best) best = cost, split = b + 1, best_left = left;
+  }
+  std::partition(group.items.begin(), group.items.end(), [&](const Item& item) { return bin_of(item) < split; });
+  const Group rest{group.items.subspan(best_left.count), right[split].box, right[split].middles};
+  group = {group.items.first(best_left.count), best_left.box, best_left.middles};
+  return rest;
+}
+
+// The same, in halves by number.
+Group HalveOff(Group& group) {
+  const int axis = group.box.high.x - group.box.low.x >= group.box.high.y - group.box.low.y ? 0 : 1;
+  const std::size_t half = group.items.size() / 2;
+  std::nth_element(group.items.begin(), group.items.begin() + static_cast<std::ptrdiff_t>(half), group.items.end(),
+                   [axis](const Item& l, const Item& r) {
+                     const double a = Along(l.Middle(), axis), b = Along(r.Middle(), axis);
+                     return a != b ? a < b : l.element < r.element;
+                   });
+  const Items first = group.items.first(half), second = group.items.subspan(half);
+  const Bin left = BinOf(first), right = BinOf(second);
+  group = {first, left.box, left.middles};
+  return {second, right.box, right.middles};
+}
+
+// At most eight groups: the one whose box is largest is split until there are eight, or none is too large for a leaf.
+struct Groups {
+  std::size_t count = 1;
+  std::array<Group, kWidth> group;
+};
+
+Groups SplitIntoGroups(const Group& whole, bool balanced) {
+  Groups groups;
+  groups.group[0] = whole;
+  while (groups.count < kWidth) {
+    Group* largest = nullptr;
+    for (std::size_t g = 0; g < groups.count; ++g) {
+      Group& group = groups.group[g];
+      if (group.items.size() <= kWidth) continue;
+      const bool larger = largest == nullptr || (balanced ? group.items.size() > largest->items.size()
+                                                          : group.box.HalfPerimeter() > largest->box.HalfPerimeter());
+      if (larger) largest = &group;
+    }
+    if (largest == nullptr) break;
+    const Box& middles = largest->middles;
+    const bool apart = middles.high.x > middles.low.x || middles.high.y > middles.low.y;
+    groups.group[groups.count++] = balanced || !apart ? HalveOff(*largest) : SplitOff(*largest);
+  }
+  return groups;
+}
+
+std::uint8_t GridNumber(double value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0)); }
+
+// Writes the lanes of a node: from coordinates of the scene to numbers of the node's grid.
+class LaneWriter {
+ public:
+  LaneWriter(const BvhFrame& frame, const Box& box, BvhNode& node) : node_(node), frame_(frame) {
+    const Point2 low = ToFrame(box.low), high = ToFrame(box.high);
+    const double extent = std::max({high.x - low.x, high.y - low.y, 0.5 * BvhNode::kLeastExtent});
+    // A step for what is to spare, and half a step for rounding, on both sides.
+    node.step = static_cast<float>(extent / 252);
+    node.inverse_step = 1 / node.step;
+    const double step = static_cast<double>(node.step);
+    node.origin_x = static_cast<float>(low.x - 1.5 * step);
+    node.origin_y = static_cast<float>(low.y - 1.5 * step);
+  }
+
+  void SetBox(std::size_t lane, const Box& box) {
+    const Point2 low = ToGrid(box.low), high = ToGrid(box.high);
+    node_.low_x[lane] = GridNumber(std::floor(low.x - BvhNode::kSpareSteps));
+    node_.low_y[lane] = GridNumber(std::floor(low.y - BvhNode::kSpareSteps));
+    node_.high_x[lane] = GridNumber(std::ceil(high.x + BvhNode::kSpareSteps));
+    node_.high_y[lane] = GridNumber(std::ceil(high.y + BvhNode::kSpareSteps));
+  }
+
+  void SetEnds(std::size_t lane, Point2 a, Point2 b) {
+    const Point2 grid_a = ToGrid(a), grid_b = ToGrid(b);
+    node_.low_x[lane] = GridNumber(grid_a.x + 0.5);
+    node_.low_y[lane] = GridNumber(grid_a.y + 0.5);
+    node_.high_x[lane] = GridNumber(grid_b.x + 0.5);
+    node_.high_y[lane] = GridNumber(grid_b.y + 0.5);
+  }
+
+ private:
+  Point2 ToFrame(Point2 p) const {
+    return {(p.x - frame_.center.x) / frame_.size, (p.y - frame_.center.y) / frame_.size};
+  }
+  Point2 ToGrid(Point2 p) const {
+    const Point2 q = ToFrame(p);
+    const double step = static_cast<double>(node_.step);
+    return {(q.x - static_cast<double>(node_.origin_x)) / step, (q.y - static_cast<double>(node_.origin_y)) / step};
+  }
+
+  BvhNode& node_;
+  const BvhFrame& frame_;
+};
+
+// The smallest frame of the box.
+BvhFrame FrameOf(const Box& box) {
+  BvhFrame frame;
+  frame.center = {0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y)};
+  const double half = std::max({box.high.x - frame.center.x, box.high.y - frame.center.y, 1e-300});
+  int exponent = 0;
+  std::frexp(half, &exponent);
+  frame.size = std::ldexp(1, exponent);
+  frame.inverse_size = 1 / frame.size;
+  return frame;
+}
+
 }  // namespace
 
-void Box::Add(Point2 p) {
-  low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-  high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-}
-
-void Box::Add(const Box& box) {
-  low = {std::min(low.x, box.low.x), std::min(low.y, box.low.y)};
-  high = {std::max(high.x, box.high.x), std::max(high.y, box.high.y)};
-}
-
-Box BoxOf(const Element& element, double margin) {
-  Box box;
-  box.Add(element.a);
-  box.Add(element.b);
-  if (element.kind == Element::Kind::kArc) {
-    // An arc of at most a quarter lies in the triangle of its ends and the point where its end tangents meet, and
-    // bulges from the chord by no more than half of it.
-    const Vector2 chord = element.b - element.a;
-    const Vector2 outward = element.Orientation() * Right(chord);
-    const double bulge = 0.5 * Length(chord);
-    const Vector2 offset = bulge / Length(chord) * outward;
-    const double cos_half = Dot(element.radial_a, Normalized(element.radial_a + element.radial_b));
-    const Vector2 sagitta = std::min(bulge, element.radius * (1 - cos_half) * (1 + 1e-9) + 1e-15) / bulge * offset;
-    box.Add(element.a + sagitta);
-    box.Add(element.b + sagitta);
-  }
-  return {box.low - Vector2{margin, margin}, box.high + Vector2{margin, margin}};
+Box BvhNode::BoxOfLane(int lane) const {
+  const double x = static_cast<double>(origin_x), y = static_cast<double>(origin_y), size = static_cast<double>(step);
+  return {{x + low_x[lane] * size, y + low_y[lane] * size}, {x + high_x[lane] * size, y + high_y[lane] * size}};
 }
 
 Bvh::Bvh(const Scene& scene) {
   const std::vector<Element>& elements = scene.elements();
   if (elements.empty()) return;
-  const std::uint32_t count = static_cast<std::uint32_t>(elements.size());
-  std::vector<Box> boxes(count);
-  for (std::uint32_t i = 0; i < count; ++i) boxes[i] = BoxOf(elements[i], 2 * scene.touch_distance());
-  order_.resize(count);
-  std::iota(order_.begin(), order_.end(), 0u);
-  nodes_.reserve(2 * elements.size());
-  nodes_.push_back({{}, 0, count});
+  std::vector<Item> all(elements.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i] = {BoxOf(elements[i], 2 * scene.touch_distance()), static_cast<std::uint32_t>(i)};
+  }
+  const Bin everything = BinOf(all);
+  bounds_ = everything.box;
+  slots_.reserve(elements.size());
+  nodes_.reserve(elements.size() / 4 + 1);
+  nodes_.emplace_back();
 
   struct Task {
     std::uint32_t node;
+    std::uint32_t frame;
     int depth;
+    Group group;
   };
-  std::vector<Task> tasks{{0, 0}};
+  std::vector<Task> tasks{{0, 0, 0, {all, everything.box, everything.middles}}};
   while (!tasks.empty()) {
     const Task task = tasks.back();
     tasks.pop_back();
-    Node& node = nodes_[task.node];
-    const auto begin = order_.begin() + node.first;
-    const auto end = begin + node.count;
-    Box middles;
-    for (auto it = begin; it != end; ++it) {
-      node.box.Add(boxes[*it]);
-      middles.Add(Middle(boxes[*it]));
+    const Items items = task.group.items;
+    const Box& box = task.group.box;
+    const double extent = std::max(box.high.x - box.low.x, box.high.y - box.low.y);
+    BvhNode node;
+    if (items.size() > kWidth && extent < BvhNode::kLeastExtent * frames_[task.frame].size && extent > kLeastFrame) {
+      node.kind = BvhNode::Kind::kFrame;
+      node.frame = static_cast<std::uint32_t>(frames_.size());
+      node.first = static_cast<std::uint32_t>(nodes_.size());
+      frames_.push_back(FrameOf(box));
+      nodes_.emplace_back();
+      tasks.push_back({node.first, node.frame, task.depth, task.group});
+      nodes_[task.node] = node;
+      continue;
     }
-    if (node.count <= kLeafSize) continue;
-
-    // The split with the least surface area cost (MacDonald and Booth 1990), over bins of equal width (Wald 2007).
-    const int axis = middles.high.x - middles.low.x >= middles.high.y - middles.low.y ? 0 : 1;
-    const double low = Along(middles.low, axis);
-    const double width = Along(middles.high, axis) - low;
-    const auto bin_of = [&](std::uint32_t i) {
-      return std::min(kBins - 1, static_cast<std::size_t>((Along(Middle(boxes[i]), axis) - low) / width * kBins));
-    };
-    auto middle = begin + node.count / 2;
-    if (width > 0 && task.depth < kMaxDepth / 2) {
-      std::array<Box, kBins> bin;
-      std::array<std::uint32_t, kBins> filled{};
-      for (auto it = begin; it != end; ++it) {
-        bin[bin_of(*it)].Add(boxes[*it]);
-        ++filled[bin_of(*it)];
-      }
-      std::array<double, kBins> right_cost{};
-      Box right;
-      std::uint32_t right_count = 0;
-      for (std::size_t b = kBins - 1; b > 0; --b) {
-        right.Add(bin[b]);
-        right_count += filled[b];
-        right_cost[b] = right_count == 0 ? 0 : right.HalfPerimeter() * right_count;
-      }
-      Box left;
-      std::uint32_t left_count = 0;
-      double best = std::numeric_limits<double>::infinity();
-      std::size_t split = 0;
-      for (std::size_t b = 0; b + 1 < kBins; ++b) {
-        left.Add(bin[b]);
-        left_count += filled[b];
-        if (left_count == 0 || left_count == node.count) continue;
-        const double cost = left.HalfPerimeter() * left_count + right_cost[b + 1];
-        if (cost < best) best = cost, split = b + 1;
-      }
-      middle = std::partition(begin, end, [&](std::uint32_t i) { return bin_of(i) < split; });
-    } else {
-      // All in one place, or too deep: halves by order keep the depth bounded.
-      std::nth_element(begin, middle, end, [&](std::uint32_t l, std::uint32_t r) {
-        return Along(Middle(boxes[l]), axis) < Along(Middle(boxes[r]), axis);
+    LaneWriter lanes(frames_[task.frame], box, node);
+    if (items.size() <= kWidth) {
+      node.first = static_cast<std::uint32_t>(slots_.size());
+      node.count = static_cast<std::uint8_t>(items.size());
+      const bool straight = std::all_of(items.begin(), items.end(), [&](const Item& item) {
+        return elements[item.element].kind == Element::Kind::kSegment;
       });
+      node.kind = straight ? BvhNode::Kind::kEnds : BvhNode::Kind::kBoxes;
+      for (std::size_t lane = 0; lane < items.size(); ++lane) {
+        const Element& element = elements[items[lane].element];
+        slots_.push_back({element.a, element.b, items[lane].element, element.carrier});
+        if (straight) {
+          lanes.SetEnds(lane, element.a, element.b);
+        } else {
+          lanes.SetBox(lane, items[lane].box);
+        }
+      }
+    } else {
+      // Halves by number keep the depth bounded: 11 levels of them hold any number of elements.
+      const Groups groups = SplitIntoGroups(task.group, task.depth >= kMaxDepth - 12);
+      node.first = static_cast<std::uint32_t>(nodes_.size());
+      node.count = static_cast<std::uint8_t>(groups.count);
+      nodes_.resize(nodes_.size() + groups.count);
+      for (std::size_t lane = 0; lane < groups.count; ++lane) {
+        lanes.SetBox(lane, groups.group[lane].box);
+        tasks.push_back(
+            {node.first + static_cast<std::uint32_t>(lane), task.frame, task.depth + 1, groups.group[lane]});
+      }
     }
-    const std::uint32_t first = node.first;
-    const std::uint32_t left_count = static_cast<std::uint32_t>(middle - begin);
-    const std::uint32_t right_count = node.count - left_count;
-    const std::uint32_t children = static_cast<std::uint32_t>(nodes_.size());
-    node.first = children;
-    node.count = 0;
-    nodes_.push_back({{}, first, left_count});
-    nodes_.push_back({{}, first + left_count, right_count});
-    tasks.push_back({children, task.depth + 1});
-    tasks.push_back({children + 1, task.depth + 1});
+    nodes_[task.node] = node;
   }
 }
 

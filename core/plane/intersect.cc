@@ -25,21 +25,9 @@ void Keep(const Element& arc, Vector2 origin_from_a, Vector2 direction, double t
 }  // namespace
 
 Crossings CrossSegment(const Element& segment, Point2 origin, Vector2 direction, double touch) {
-  const Vector2 a = segment.a - origin;
-  const Vector2 b = segment.b - origin;
-  // On which side of the line each end lies: the same arithmetic for every element that shares the end.
-  const double side_a = Cross(direction, a);
-  const double side_b = Cross(direction, b);
-  const double length_squared = LengthSquared(direction);
-  const double slack = touch * std::sqrt(length_squared);
-  if ((side_a > slack && side_b > slack) || (side_a < -slack && side_b < -slack)) return {};
-  double near = Dot(a, direction) / length_squared;
-  double far = Dot(b, direction) / length_squared;
-  if (near > far) std::swap(near, far);
-  const Vector2 along = segment.b - segment.a;
-  const double denominator = Cross(direction, along);
-  const double t = denominator != 0 ? Cross(a, along) / denominator : near;
-  return {1, {std::clamp(t, near, far), 0}};
+  Crossings crossings;
+  if (MeetsSegment(Line(origin, direction, touch), segment.a, segment.b, crossings.t[0])) crossings.count = 1;
+  return crossings;
 }
 
 Crossings CrossArc(const Element& arc, Point2 origin, Vector2 direction, double touch) {

@@ -5,9 +5,11 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "core/math/vec.h"
 #include "core/plane/bvh.h"
+#include "core/plane/ray_walk.h"
 #include "core/scene/scene.h"
 
 namespace flatlight {
@@ -17,6 +19,11 @@ namespace flatlight {
 struct SurfacePoint {
   Point2 position;
   ElementId element = ElementId::kNone;
+};
+
+struct Ray {
+  SurfacePoint from;
+  Vector2 direction;
 };
 
 struct Hit {
@@ -34,8 +41,14 @@ class RayCaster {
   // points: a ray through a point where two curves meet, to the accuracy of the coordinates, hits one of them.
   std::optional<Hit> ClosestHit(const SurfacePoint& from, Vector2 direction) const;
 
+  // The same for many rays, in less time than one after another. Spans of one length.
+  void ClosestHits(std::span<const Ray> rays, std::span<std::optional<Hit>> hits) const;
+
   // True if nothing lies between two points, their own places on their own curves aside.
   bool Visible(const SurfacePoint& from, const SurfacePoint& to) const;
+
+  // The same for many pairs of points, in less time than one after another. Spans of one length.
+  void Visible(std::span<const SurfacePoint> from, std::span<const SurfacePoint> to, std::span<bool> visible) const;
 
   // Whether another line or circle than the point's own passes through it.
   bool Touches(const SurfacePoint& point) const;
@@ -44,6 +57,9 @@ class RayCaster {
   const Bvh& bvh() const { return bvh_; }
 
  private:
+  RayEnd EndAt(const SurfacePoint& point) const;
+  Hit HitAt(const WalkRay& ray, const NearestCrossing& nearest) const;
+
   std::shared_ptr<const Scene> scene_;
   Bvh bvh_;
 };

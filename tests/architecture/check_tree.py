@@ -127,7 +127,9 @@ def check_files(tree):
             if not tree.targets_of(path):
                 yield f"{path}: no target is in the folder of this header"
             guard = "FLATLIGHT_" + re.sub(r"[^A-Z0-9]", "_", str(path).upper()) + "_"
-            if f"#ifndef {guard}\n#define {guard}\n" not in tree.text(path):
+            # Vector code is included once for every vector unit, so its guard is one that toggles.
+            opening = f"#ifdef {guard}\n#undef {guard}\n" if path.stem.endswith("-inl") else f"#ifndef {guard}\n"
+            if opening not in tree.text(path) or f"#define {guard}\n" not in tree.text(path):
                 yield f"{path}: the include guard should be {guard}"
     for folder in source_tree.FOLDERS:
         for file in sorted((tree.root / folder).rglob("*")):

@@ -50,30 +50,31 @@ const std::vector<Part>& Gatherer::Gather(const Receiver& receiver) {
   parts_.clear();
   heap_.clear();
   intervals_.assign(1, {-1, kInfinity});
-  if (!bvh_.nodes().empty()) Push(0, receiver);
+  if (!bvh_.nodes().empty()) Push(0, bvh_.bounds(), receiver);
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end());
     const Entry entry = heap_.back();
     heap_.pop_back();
-    const Bvh::Node& node = bvh_.nodes()[entry.node];
     // What was found since it was pushed may hide it by now.
-    const BoxView view(node.box, receiver);
-    if (Hidden(view.low, view.high, view.distance)) continue;
-    if (node.count == 0) {
-      Push(node.first, receiver);
-      Push(node.first + 1, receiver);
-    } else {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) AddElement(bvh_.order()[i], receiver);
+    if (Hidden(entry.low, entry.high, entry.distance)) continue;
+    const BvhNode& node = bvh_.nodes()[entry.node];
+    for (int lane = 0; lane < node.count; ++lane) {
+      const auto child = node.first + static_cast<std::uint32_t>(lane);
+      if (node.kind == BvhNode::Kind::kInner) {
+        Push(child, node.BoxOfLane(lane), receiver);
+      } else {
+        AddElement(bvh_.slots()[child].element, receiver);
+      }
     }
   }
   return parts_;
 }
 
-void Gatherer::Push(std::uint32_t node, const Receiver& receiver) {
+void Gatherer::Push(std::uint32_t node, const Box& box, const Receiver& receiver) {
   ++tests_;
-  const BoxView view(bvh_.nodes()[node].box, receiver);
+  const BoxView view(box, receiver);
   if (view.Empty() || Hidden(view.low, view.high, view.distance)) return;
-  heap_.push_back({view.distance, node});
+  heap_.push_back({view.distance, view.low, view.high, node});
   std::push_heap(heap_.begin(), heap_.end());
 }
 

@@ -29,11 +29,12 @@ class Gatherer {
   };
   struct Entry {
     double distance;
+    double low, high;
     std::uint32_t node;
     friend bool operator<(const Entry& l, const Entry& r) { return l.distance > r.distance; }  // Nearest on top.
   };
 
-  void Push(std::uint32_t node, const Receiver& receiver);
+  void Push(std::uint32_t node, const Box& box, const Receiver& receiver);
   void AddElement(std::uint32_t element, const Receiver& receiver);
   bool Hidden(double low, double high, double distance) const;
   void Cover(const Part& part, const Receiver& receiver);

@@ -5,67 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
 
-#include "core/plane/intersect.h"
 #include "core/scene/element_frame.h"
+#include "tests/core/plane/brute_force.h"
 
 namespace flatlight {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double Uniform(double low, double high) {
-    return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
-  }
-  Point2 Point() { return {Uniform(-1, 1), Uniform(-1, 1)}; }
-  Vector2 Direction() {
-    const double angle = Uniform(-kPi, kPi);
-    return {std::cos(angle), std::sin(angle)};
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-template <typename Shape>
-void AddCurve(SceneDescription& scene, Shape shape) {
-  if (scene.materials.empty()) scene.materials.push_back({"m", LambertianDescription{{0}}});
-  scene.curves.push_back({"c" + std::to_string(scene.curves.size()), shape, "m", std::nullopt});
-}
-
-std::shared_ptr<const Scene> Build(SceneDescription description) {
-  ProbeDescription probe;
-  probe.name = "p";
-  probe.points.push_back({{0, 0}, {0, 1}});
-  description.probes.push_back(probe);
-  Diagnostics diagnostics;
-  auto scene = BuildScene(description, diagnostics);
-  for (const Diagnostic& d : diagnostics.kept()) ADD_FAILURE() << d.path << " " << d.message;
+std::shared_ptr<const Scene> Build(const SceneDescription& description) {
+  auto scene = BuildWithProbe(description);
+  EXPECT_TRUE(scene);
   return scene;
-}
-
-// Every element, one by one.
-double BruteForce(const Scene& scene, const SurfacePoint& from, Vector2 direction, std::uint32_t* hit) {
-  double nearest = INFINITY;
-  for (std::uint32_t e = 0; e < scene.elements().size(); ++e) {
-    const Element& element = scene.elements()[e];
-    const bool own = from.element != ElementId::kNone && scene.element(from.element).carrier == element.carrier;
-    Crossings crossings;
-    if (element.kind == Element::Kind::kSegment) {
-      if (!own) crossings = CrossSegment(element, from.position, direction, scene.touch_distance());
-    } else {
-      crossings = own ? CrossOwnCircle(element, from.position, direction, scene.touch_distance())
-                      : CrossArc(element, from.position, direction, scene.touch_distance());
-    }
-    for (int i = 0; i < crossings.count; ++i)
-      if (crossings.t[i] > 0 && crossings.t[i] < nearest) nearest = crossings.t[i], *hit = e;
-  }
-  return nearest;
 }
 
 TEST(RayCasterTest, TreeAgreesWithBruteForce) {
@@ -94,8 +47,7 @@ TEST(RayCasterTest, TreeAgreesWithBruteForce) {
         } else if (ray % 5 == 0) {
           direction = ray % 10 == 0 ? Vector2{1, 0} : Vector2{0, -1};
         }
-        std::uint32_t expected = 0;
-        const double distance = BruteForce(*scene, from, direction, &expected);
+        const auto [distance, expected] = HitByBruteForce(*scene, from, direction);
         const auto hit = caster.ClosestHit(from, direction);
         ASSERT_EQ(hit.has_value(), std::isfinite(distance));
         if (!hit) continue;
