@@ -34,7 +34,7 @@ struct Group {
 };
 
 // Leaves are tested whole.
-double Leaves(std::size_t count) { return static_cast<double>((count + kWidth - 1) / kWidth); }
+double Leaves(std::size_t count) { return std::ceil(static_cast<double>(count) / kWidth); }
 
 struct Bin {
   Box box;

@@ -120,7 +120,7 @@ class NodeStack {
 
   alignas(16) static constexpr std::int32_t kUpperPair[4] = {0, 0, -1, -1};
 #endif
-  static constexpr std::size_t kCapacity = BvhNode::kWidth * (Bvh::kMaxDepth + 1);
+  static constexpr std::size_t kCapacity = std::size_t{BvhNode::kWidth} * (Bvh::kMaxDepth + 1);
   std::size_t size_;
   std::int32_t keys_[kCapacity];
   std::uint32_t first_[kCapacity];

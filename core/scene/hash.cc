@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <unordered_map>
 
 namespace flatlight {
@@ -81,8 +82,11 @@ std::string HashWorld(const SceneDescription& description) {
 }
 
 std::string HashProbes(const SceneDescription& description) {
-  std::unordered_map<std::string, std::uint64_t> curves;
-  for (const CurveDescription& curve : description.curves) curves.emplace(curve.name, curves.size());
+  std::unordered_map<std::string_view, std::uint64_t> curves;  // Those with a probe.
+  for (const ProbeDescription& probe : description.probes)
+    if (probe.curve) curves.emplace(*probe.curve, 0);
+  for (std::size_t i = 0; i < description.curves.size(); ++i)
+    if (const auto probed = curves.find(description.curves[i].name); probed != curves.end()) probed->second = i;
   Hasher hasher;
   for (const ProbeDescription& probe : description.probes) {
     hasher.Add(std::uint64_t{probe.curve.has_value()});

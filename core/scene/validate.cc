@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 
 namespace flatlight {
@@ -32,17 +33,19 @@ std::string Quoted(std::string text) {
 
 std::string Item(const std::string& list, std::size_t index) { return list + "[" + std::to_string(index) + "]"; }
 
-// The unique names of one list.
+// The unique names of one list, which must outlive this.
 class Names {
  public:
-  Names(std::string list, Diagnostics& diagnostics) : list_(std::move(list)), diagnostics_(diagnostics) {}
+  Names(std::string list, std::size_t size, Diagnostics& diagnostics) : list_(std::move(list)), diagnostics_(diagnostics) {
+    index_.reserve(size);
+  }
 
   void Add(const std::string& name, std::size_t index) {
-    const std::string path = Item(list_, index) + ".name";
+    const auto path = [&] { return Item(list_, index) + ".name"; };
     if (name.empty()) {
-      diagnostics_.Add(path, "is missing or empty; every item needs a name");
+      diagnostics_.Add(path(), "is missing or empty; every item needs a name");
     } else if (const auto [known, added] = index_.emplace(name, index); !added) {
-      diagnostics_.Add(path, Quoted(name) + " is the name of " + Item(list_, known->second) + " too; names are unique");
+      diagnostics_.Add(path(), Quoted(name) + " is the name of " + Item(list_, known->second) + " too; names are unique");
     }
   }
   bool Has(const std::string& name) const { return index_.count(name) != 0; }
@@ -54,7 +57,7 @@ class Names {
     std::size_t shown = 0;
     for (const auto& [name, index] : index_) {
       if (shown++ == kShown) return text + " ...";
-      text += " " + Quoted(name);
+      text += " " + Quoted(std::string(name));
     }
     return text;
   }
@@ -62,7 +65,7 @@ class Names {
  private:
   std::string list_;
   Diagnostics& diagnostics_;
-  std::unordered_map<std::string, std::size_t> index_;
+  std::unordered_map<std::string_view, std::size_t> index_;
 };
 
 class Validator {
@@ -71,9 +74,9 @@ class Validator {
       : scene_(scene),
         limits_(limits),
         diagnostics_(diagnostics),
-        materials_("plane.materials", diagnostics),
-        curves_("plane.curves", diagnostics),
-        probes_("probes", diagnostics) {}
+        materials_("plane.materials", scene.materials.size(), diagnostics),
+        curves_("plane.curves", std::min(scene.curves.size(), limits.max_curves), diagnostics),
+        probes_("probes", scene.probes.size(), diagnostics) {}
 
   void Run() {
     for (std::size_t i = 0; i < scene_.materials.size(); ++i) CheckMaterial(i);

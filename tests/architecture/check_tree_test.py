@@ -189,6 +189,13 @@ class CheckTreeTest(unittest.TestCase):
             "FLATLIGHT_CORE_SPACE_SPACE_H_", {"core/space/space.h": header("core/plane/space.h")}
         )
 
+    def test_guard_of_vector_code_toggles(self):
+        text = header("core/space/walk-inl.h").replace("WALK-INL", "WALK_INL")
+        guard = "FLATLIGHT_CORE_SPACE_WALK_INL_H_"
+        self.expect(guard, {"core/space/walk-inl.h": text})
+        toggling = text.replace(f"#ifndef {guard}\n", f"#ifdef {guard}\n#undef {guard}\n#else\n")
+        self.assertNotIn(guard, "\n".join(self.violations({"core/space/walk-inl.h": toggling})))
+
     def test_missing_licence(self):
         self.expect("the first line should be the licence", {"tests/core/math/make.py": "print()\n"})
 
