@@ -7,6 +7,8 @@
 #include <limits>
 #include <span>
 
+#include "core/plane/lane_writer.h"
+
 namespace flatlight {
 namespace {
 
@@ -138,52 +140,6 @@ Groups SplitIntoGroups(const Group& whole, bool balanced) {
   return groups;
 }
 
-std::uint8_t GridNumber(double value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0)); }
-
-// Writes the lanes of a node: from coordinates of the scene to numbers of the node's grid.
-class LaneWriter {
- public:
-  LaneWriter(const BvhFrame& frame, const Box& box, BvhNode& node) : node_(node), frame_(frame) {
-    const Point2 low = ToFrame(box.low), high = ToFrame(box.high);
-    const double extent = std::max({high.x - low.x, high.y - low.y, 0.5 * BvhNode::kLeastExtent});
-    // A step for what is to spare, and half a step for rounding, on both sides.
-    node.step = static_cast<float>(extent / 252);
-    node.inverse_step = 1 / node.step;
-    const double step = static_cast<double>(node.step);
-    node.origin_x = static_cast<float>(low.x - 1.5 * step);
-    node.origin_y = static_cast<float>(low.y - 1.5 * step);
-  }
-
-  void SetBox(std::size_t lane, const Box& box) {
-    const Point2 low = ToGrid(box.low), high = ToGrid(box.high);
-    node_.low_x[lane] = GridNumber(std::floor(low.x - BvhNode::kSpareSteps));
-    node_.low_y[lane] = GridNumber(std::floor(low.y - BvhNode::kSpareSteps));
-    node_.high_x[lane] = GridNumber(std::ceil(high.x + BvhNode::kSpareSteps));
-    node_.high_y[lane] = GridNumber(std::ceil(high.y + BvhNode::kSpareSteps));
-  }
-
-  void SetEnds(std::size_t lane, Point2 a, Point2 b) {
-    const Point2 grid_a = ToGrid(a), grid_b = ToGrid(b);
-    node_.low_x[lane] = GridNumber(grid_a.x + 0.5);
-    node_.low_y[lane] = GridNumber(grid_a.y + 0.5);
-    node_.high_x[lane] = GridNumber(grid_b.x + 0.5);
-    node_.high_y[lane] = GridNumber(grid_b.y + 0.5);
-  }
-
- private:
-  Point2 ToFrame(Point2 p) const {
-    return {(p.x - frame_.center.x) / frame_.size, (p.y - frame_.center.y) / frame_.size};
-  }
-  Point2 ToGrid(Point2 p) const {
-    const Point2 q = ToFrame(p);
-    const double step = static_cast<double>(node_.step);
-    return {(q.x - static_cast<double>(node_.origin_x)) / step, (q.y - static_cast<double>(node_.origin_y)) / step};
-  }
-
-  BvhNode& node_;
-  const BvhFrame& frame_;
-};
-
 // The smallest frame of the box.
 BvhFrame FrameOf(const Box& box) {
   BvhFrame frame;
@@ -198,11 +154,6 @@ BvhFrame FrameOf(const Box& box) {
 
 }  // namespace
 
-Box BvhNode::BoxOfLane(int lane) const {
-  const double x = static_cast<double>(origin_x), y = static_cast<double>(origin_y), size = static_cast<double>(step);
-  return {{x + low_x[lane] * size, y + low_y[lane] * size}, {x + high_x[lane] * size, y + high_y[lane] * size}};
-}
-
 Bvh::Bvh(const Scene& scene) {
   const std::vector<Element>& elements = scene.elements();
   if (elements.empty()) return;
@@ -212,6 +163,7 @@ Bvh::Bvh(const Scene& scene) {
   }
   const Bin everything = BinOf(all);
   bounds_ = everything.box;
+  cost_ = bounds_.HalfPerimeter();
   slots_.reserve(elements.size());
   nodes_.reserve(elements.size() / 4 + 1);
   nodes_.emplace_back();
@@ -235,6 +187,7 @@ Bvh::Bvh(const Scene& scene) {
       node.frame = static_cast<std::uint32_t>(frames_.size());
       node.first = static_cast<std::uint32_t>(nodes_.size());
       frames_.push_back(FrameOf(box));
+      cost_ += box.HalfPerimeter();
       nodes_.emplace_back();
       tasks.push_back({node.first, node.frame, task.depth, task.group});
       nodes_[task.node] = node;
@@ -265,6 +218,7 @@ Bvh::Bvh(const Scene& scene) {
       nodes_.resize(nodes_.size() + groups.count);
       for (std::size_t lane = 0; lane < groups.count; ++lane) {
         lanes.SetBox(lane, groups.group[lane].box);
+        cost_ += groups.group[lane].box.HalfPerimeter();
         tasks.push_back(
             {node.first + static_cast<std::uint32_t>(lane), task.frame, task.depth + 1, groups.group[lane]});
       }

@@ -10,6 +10,7 @@
 #define FLATLIGHT_CORE_PLANE_BVH_H_
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/math/vec.h"
@@ -73,6 +74,10 @@ class Bvh {
 
   explicit Bvh(const Scene& scene);
 
+  // The tree of a scene that differs little from the one this was made for: only what changed is done again. Absent if
+  // too much changed, or if the tree would become a bad one (its boxes larger by half in all): then build a new one.
+  std::optional<Bvh> Refit(const Scene& before, const Scene& after) const;
+
   // Node 0 is the root. Empty if there are no elements.
   const std::vector<BvhNode>& nodes() const { return nodes_; }
   const std::vector<Slot>& slots() const { return slots_; }
@@ -82,10 +87,15 @@ class Bvh {
   const Box& bounds() const { return bounds_; }
 
  private:
+  // Both false if the tree would not do.
+  bool RefitNodes(const Scene& scene, const std::vector<char>& changed);
+  bool RefitNode(const Scene& scene, std::uint32_t frame_index, std::vector<Box>& boxes, std::size_t index);
+
   std::vector<BvhNode> nodes_;
   std::vector<Slot> slots_;
   std::vector<BvhFrame> frames_{BvhFrame{}};
   Box bounds_;
+  double cost_ = 0;  // Half the perimeters of all nodes' boxes when it was built.
 };
 
 }  // namespace flatlight

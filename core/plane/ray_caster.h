@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "core/math/vec.h"
 #include "core/plane/bvh.h"
@@ -36,6 +37,8 @@ struct Hit {
 class RayCaster {
  public:
   explicit RayCaster(std::shared_ptr<const Scene> scene);
+  // With a tree that was made for the scene.
+  RayCaster(std::shared_ptr<const Scene> scene, Bvh bvh) : scene_(std::move(scene)), bvh_(std::move(bvh)) {}
 
   // The first curve hit by from.position + t direction, t > 0. Ties break by (distance, element). Closed at shared end
   // points: a ray through a point where two curves meet, to the accuracy of the coordinates, hits one of them.

@@ -36,7 +36,8 @@ std::string Item(const std::string& list, std::size_t index) { return list + "["
 // The unique names of one list, which must outlive this.
 class Names {
  public:
-  Names(std::string list, std::size_t size, Diagnostics& diagnostics) : list_(std::move(list)), diagnostics_(diagnostics) {
+  Names(std::string list, std::size_t size, Diagnostics& diagnostics)
+      : list_(std::move(list)), diagnostics_(diagnostics) {
     index_.reserve(size);
   }
 
@@ -45,7 +46,8 @@ class Names {
     if (name.empty()) {
       diagnostics_.Add(path(), "is missing or empty; every item needs a name");
     } else if (const auto [known, added] = index_.emplace(name, index); !added) {
-      diagnostics_.Add(path(), Quoted(name) + " is the name of " + Item(list_, known->second) + " too; names are unique");
+      diagnostics_.Add(path(),
+                       Quoted(name) + " is the name of " + Item(list_, known->second) + " too; names are unique");
     }
   }
   bool Has(const std::string& name) const { return index_.count(name) != 0; }
