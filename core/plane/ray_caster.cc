@@ -14,6 +14,8 @@ namespace flatlight {
 namespace {
 
 constexpr std::size_t kBatch = 64;
+// Smaller trees stay in the nearest cache: there, walks that take turns cost more than they save.
+constexpr std::size_t kWorthTurns = 512;
 
 }  // namespace
 
@@ -41,6 +43,10 @@ std::optional<Hit> RayCaster::ClosestHit(const SurfacePoint& from, Vector2 direc
 
 void RayCaster::ClosestHits(std::span<const Ray> rays, std::span<std::optional<Hit>> hits) const {
   FLATLIGHT_DCHECK(rays.size() == hits.size());
+  if (bvh_.nodes().size() < kWorthTurns) {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = ClosestHit(rays[i].from, rays[i].direction);
+    return;
+  }
   std::array<WalkRay, kBatch> walk_rays;
   std::array<NearestCrossing, kBatch> nearest;
   for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
@@ -61,6 +67,10 @@ bool RayCaster::Visible(const SurfacePoint& from, const SurfacePoint& to) const 
 void RayCaster::Visible(std::span<const SurfacePoint> from, std::span<const SurfacePoint> to,
                         std::span<bool> visible) const {
   FLATLIGHT_DCHECK(from.size() == to.size() && from.size() == visible.size());
+  if (bvh_.nodes().size() < kWorthTurns) {
+    for (std::size_t i = 0; i < from.size(); ++i) visible[i] = Visible(from[i], to[i]);
+    return;
+  }
   std::array<RayEnd, kBatch> begins, ends;
   for (std::size_t first = 0; first < from.size(); first += kBatch) {
     const std::size_t count = std::min(kBatch, from.size() - first);

@@ -122,21 +122,10 @@ HWY_INLINE void Run(const World& world, Search& search) {
   }
 }
 
-// Smaller trees stay in the nearest cache: there, taking turns costs more than it saves.
-constexpr std::size_t kWorthTurns = 512;
-
 // Several walks take turns, a node each, so that one works while another waits for memory. Input(i) gives what the
 // i-th search is made of.
 template <typename Search, typename Input>
 HWY_INLINE void RunMany(const World& world, std::size_t size, const Input& input, typename Search::Result* results) {
-  if (world.bvh.nodes().size() < kWorthTurns) {
-    for (std::size_t i = 0; i < size; ++i) {
-      Search search(world, input(i));
-      Run(world, search);
-      results[i] = search.result;
-    }
-    return;
-  }
   struct Runner {
     std::size_t index;
     Search search;

@@ -42,9 +42,10 @@ struct WorldUnits {
 
 }  // namespace
 
-ExactRendering::ExactRendering(std::shared_ptr<const Scene> scene, const Plan& plan)
+ExactRendering::ExactRendering(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
+                               const Plan& plan)
     : scene_(std::move(scene)),
-      bvh_(*scene_),
+      caster_(std::move(caster)),
       options_(OptionsOf(plan)),
       derivatives_(OrderOf(plan)),
       dark_(plan.Takes(skip::kEmission)),
@@ -86,7 +87,7 @@ void ExactRendering::Advance(Executor& executor, const Cancellation& cancellatio
 }
 
 bool ExactRendering::Work(std::size_t first, std::size_t last, const Cancellation& cancellation) {
-  ExactSolver solver(*scene_, bvh_, options_);
+  ExactSolver solver(*scene_, caster_->bvh(), options_);
   for (std::size_t i = first; i < last; ++i) {
     if (cancellation.cancelled()) return false;
     values_[i] = solver.Evaluate(*points_[i]);

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/plane/bvh.h"
 #include "core/plane/exact/exact.h"
+#include "core/plane/ray_caster.h"
 #include "core/render/rendering.h"
 
 namespace flatlight {
@@ -16,7 +16,8 @@ namespace flatlight {
 // Direct light in closed form, point after point. A probe appears in the field when all its points are done.
 class ExactRendering final : public Rendering {
  public:
-  ExactRendering(std::shared_ptr<const Scene> scene, const Plan& plan);
+  // The caster's scene has the world of `scene`; it may be null where nothing emits.
+  ExactRendering(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster, const Plan& plan);
 
   void Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
                Clock::Duration budget) override;
@@ -30,7 +31,7 @@ class ExactRendering final : public Rendering {
   bool Work(std::size_t first, std::size_t last, const Cancellation& cancellation);
 
   std::shared_ptr<const Scene> scene_;
-  Bvh bvh_;
+  std::shared_ptr<const RayCaster> caster_;
   ExactOptions options_;
   int derivatives_;  // Asked for, whatever is computed.
   bool dark_;        // Nothing emits: the values are there already.

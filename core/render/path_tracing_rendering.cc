@@ -17,11 +17,9 @@ namespace {
 
 class PathSampler final : public PointSampler {
  public:
-  PathSampler(std::shared_ptr<const Scene> scene, const PathTracingOptions& options, std::uint32_t seed)
-      : scene_(std::move(scene)),
-        caster_(std::make_shared<const RayCaster>(scene_)),
-        tracer_(caster_, options),
-        seed_(seed) {
+  PathSampler(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
+              const PathTracingOptions& options, std::uint32_t seed)
+      : scene_(std::move(scene)), caster_(std::move(caster)), tracer_(caster_, options), seed_(seed) {
     for (const Receiver* point : PointsOfProbes(*scene_)) {
       points_.push_back(*point);
       // On another curve as well: what counts is what lies beyond, toward increasing arc length.
@@ -65,7 +63,8 @@ class DarkSampler final : public PointSampler {
   void AddBlock(std::size_t, std::uint32_t, const Cancellation&, std::span<double>, double&) const override {}
 };
 
-std::unique_ptr<const PointSampler> MakeSampler(std::shared_ptr<const Scene> scene, const Plan& plan) {
+std::unique_ptr<const PointSampler> MakeSampler(std::shared_ptr<const Scene> scene,
+                                                std::shared_ptr<const RayCaster> caster, const Plan& plan) {
   if (plan.Takes(skip::kEmission)) return std::make_unique<DarkSampler>();
   PathTracingOptions options;
   options.max_bounces = plan.settings.max_bounces;
@@ -75,7 +74,7 @@ std::unique_ptr<const PointSampler> MakeSampler(std::shared_ptr<const Scene> sce
   options.nothing_blocks = plan.Takes(skip::kVisibility) || plan.Disables(skip::kVisibility);
   options.end_black_paths = plan.Takes(skip::kBlackPaths);
   options.drop_unseen_emitters = plan.Takes(skip::kUnseenEmitters);
-  return std::make_unique<PathSampler>(std::move(scene), options, plan.settings.seed.value_or(0));
+  return std::make_unique<PathSampler>(std::move(scene), std::move(caster), options, plan.settings.seed.value_or(0));
 }
 
 SamplingGoal GoalOf(const Plan& plan) {
@@ -89,10 +88,11 @@ SamplingGoal GoalOf(const Plan& plan) {
 
 }  // namespace
 
-PathTracingRendering::PathTracingRendering(std::shared_ptr<const Scene> scene, const Plan& plan)
+PathTracingRendering::PathTracingRendering(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
+                                           const Plan& plan)
     : scene_(std::move(scene)),
       max_threads_(plan.MaxThreads()),
-      sampling_(MakeSampler(scene_, plan), EndsOfProbes(*scene_), GoalOf(plan)) {}
+      sampling_(MakeSampler(scene_, std::move(caster), plan), EndsOfProbes(*scene_), GoalOf(plan)) {}
 
 void PathTracingRendering::Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
                                    Clock::Duration budget) {

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "core/plane/ray_caster.h"
 #include "core/render/progressive_sampling.h"
 #include "core/render/rendering.h"
 
@@ -12,7 +13,8 @@ namespace flatlight {
 // All bounces, by Monte Carlo.
 class PathTracingRendering final : public Rendering {
  public:
-  PathTracingRendering(std::shared_ptr<const Scene> scene, const Plan& plan);
+  // The caster's scene has the world of `scene`; it may be null where nothing emits.
+  PathTracingRendering(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster, const Plan& plan);
 
   void Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
                Clock::Duration budget) override;

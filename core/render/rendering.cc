@@ -5,12 +5,22 @@
 
 #include "core/render/exact_rendering.h"
 #include "core/render/path_tracing_rendering.h"
+#include "core/render/skips.h"
 
 namespace flatlight {
 
+std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, const Plan& plan, IndexCache& indexes) {
+  // In the dark no ray is cast.
+  auto caster = plan.Takes(skip::kEmission) ? nullptr : indexes.For(scene);
+  if (plan.settings.method == Method::kExact) {
+    return std::make_unique<ExactRendering>(std::move(scene), std::move(caster), plan);
+  }
+  return std::make_unique<PathTracingRendering>(std::move(scene), std::move(caster), plan);
+}
+
 std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, const Plan& plan) {
-  if (plan.settings.method == Method::kExact) return std::make_unique<ExactRendering>(std::move(scene), plan);
-  return std::make_unique<PathTracingRendering>(std::move(scene), plan);
+  IndexCache alone(0);
+  return StartRendering(std::move(scene), plan, alone);
 }
 
 }  // namespace flatlight

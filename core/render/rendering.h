@@ -10,6 +10,7 @@
 #include "core/execution/clock.h"
 #include "core/execution/executor.h"
 #include "core/render/field.h"
+#include "core/render/index_cache.h"
 #include "core/render/plan.h"
 #include "core/scene/scene.h"
 
@@ -33,7 +34,8 @@ class Rendering {
   virtual std::shared_ptr<const Field> Snapshot() const = 0;
 };
 
-// `plan` must come from MakePlan for this scene.
+// `plan` must come from MakePlan for this scene. Takes its index from `indexes`, or makes its own.
+std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, const Plan& plan, IndexCache& indexes);
 std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, const Plan& plan);
 
 }  // namespace flatlight

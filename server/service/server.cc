@@ -7,6 +7,8 @@
 
 #include "core/execution/clock.h"
 #include "core/execution/thread_pool.h"
+#include "core/render/index_cache.h"
+#include "core/render/rendering.h"
 #include "grpcpp/ext/proto_server_reflection_plugin.h"
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/server.h"
@@ -30,6 +32,7 @@ namespace {
 constexpr std::size_t kMaxWaitingQuickBytes = 64u << 20;
 constexpr std::size_t kMaxWaitingSlowBytes = 256u << 20;
 constexpr std::size_t kMaxBuiltSceneBytes = 1u << 30;
+constexpr std::size_t kMaxIndexedElements = 2'000'000;  // Some 300 bytes each, with their scene.
 constexpr std::chrono::milliseconds kFlush{100};
 constexpr int kQuickThreads = 4;
 constexpr int kSlowThreads = 2;
@@ -59,7 +62,7 @@ struct Server::Parts {
         jobs({.max_jobs = options.limits.max_jobs}, clock),
         scenes({.max_scene_bytes = options.limits.max_scene_bytes}, clock),
         hub({.epoch = RandomEpoch(), .max_watches = options.limits.max_watches, .heartbeat = options.heartbeat}, jobs),
-        scheduler(MakeSchedulerOptions(options), jobs, pool, clock, options.start_rendering,
+        scheduler(MakeSchedulerOptions(options), jobs, pool, clock, StartOf(options),
                   [this](const JobId& job) { hub.JobChanged(job); }),
         quick(kQuickThreads, kMaxWaitingQuickBytes),
         slow(kSlowThreads, kMaxWaitingSlowBytes),
@@ -77,7 +80,15 @@ struct Server::Parts {
         scene_service(backend),
         server_service(backend) {}
 
+  Scheduler::Start StartOf(const ServerOptions& options) {
+    if (options.start_rendering) return options.start_rendering;
+    return [this](std::shared_ptr<const Scene> scene, const Plan& plan) {
+      return StartRendering(std::move(scene), plan, indexes);
+    };
+  }
+
   SteadyClock clock;
+  IndexCache indexes{kMaxIndexedElements};
   ThreadPool pool;
   MemoryJobStore jobs;
   MemorySceneStore scenes;

@@ -19,7 +19,7 @@ struct ServerOptions {
   int threads = 1;                      // For rendering.
   Limits limits;
   std::chrono::milliseconds heartbeat{10'000};  // Between messages of a watch on which nothing happens.
-  Scheduler::Start start_rendering = StartRendering;
+  Scheduler::Start start_rendering;  // Tests give their own; else StartRendering, on indexes that jobs share.
 };
 
 class Server {
