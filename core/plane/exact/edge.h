@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/math/tolerances.h"
 #include "core/math/vec.h"
 #include "core/scene/scene.h"
 
@@ -48,6 +49,16 @@ Edge VertexEdge(const Receiver& receiver, Point2 point);
 // `touch`: from the receiver to the touching point; `inward`: from there to the centre, of the circle's radius.
 Edge SilhouetteEdge(const Receiver& receiver, Vector2 touch, Vector2 inward);
 Edge HorizonEdge(double sign);
+// A vertex whose components are known; without its key.
+inline void SetVertexEdge(double tangent, double normal, Point2 point, Edge& edge) {
+  edge.kind = Edge::Kind::kVertex;
+  edge.tangent = tangent, edge.normal = normal;
+  edge.q = 1 / std::sqrt(tangent * tangent + normal * normal);
+  edge.s = tangent * edge.q;
+  edge.c = normal * edge.q;
+  edge.signed_radius = 0;
+  edge.point = point;
+}
 
 // How sin(theta) changes per arc length along the receiver's tangent. For the break law theta' = kappa - c q,
 // q' = s q^2 + R c q^3 (R the signed radius) see Jarosz et al. 2012 for the straight receiver; here for curved
@@ -58,7 +69,16 @@ struct EdgeDerivatives {
   double s_first = 0;
   double s_second = 0;
 };
-EdgeDerivatives Derive(const Edge& edge, double curvature);
+inline EdgeDerivatives Derive(const Edge& edge, double curvature) {
+  if (edge.kind == Edge::Kind::kHorizon) return {};
+  const double s = edge.s, c = edge.c, q = edge.q;
+  EdgeDerivatives d;
+  d.theta_first = curvature - c * q;
+  d.theta_second = curvature * s * q - 2 * s * c * q * q - edge.signed_radius * c * c * q * q * q;
+  d.s_first = c * d.theta_first;
+  d.s_second = c * d.theta_second - s * d.theta_first * d.theta_first;
+  return d;
+}
 
 // Bounds on the rounding errors of s, s', s'' when every coordinate is known to `coordinate_error`.
 struct EdgeErrors {
@@ -66,7 +86,27 @@ struct EdgeErrors {
   double s_first = 0;
   double s_second = 0;
 };
-EdgeErrors BoundErrors(const Edge& edge, double curvature, double coordinate_error);
+inline EdgeErrors BoundErrors(const Edge& edge, double curvature, double coordinate_error) {
+  if (edge.kind == Edge::Kind::kHorizon) return {};
+  const double c = edge.c, q = edge.q, k = std::abs(curvature), r = std::abs(edge.signed_radius);
+  constexpr double u = kUnitRoundoff;
+  // The direction turns by the displacement over the distance; a touching point slides with it.
+  const double turn = 2 * coordinate_error * q + 4 * u;
+  const double cq = c * q, ccq = c * c * q, ccqq = ccq * q;
+  EdgeErrors e;
+  e.s = c * turn + 4 * u;
+  if (k == 0 && r == 0) {
+    e.s_first = (2 * cq + ccq) * turn + 8 * u * ccq;
+    e.s_second = (9 * cq * q + 6 * ccqq) * turn + 48 * u * ccqq;
+  } else {
+    const double relative_q = turn * (1 + r * q), rccqqq = r * ccqq * q;
+    e.s_first = (k + 2 * cq) * turn + ccq * relative_q + 8 * u * (k * c + ccq);
+    e.s_second = (k * k + 6 * k * q + 9 * cq * q + 3 * rccqqq) * turn +
+                 (3 * k * cq + 6 * ccqq + 3 * c * rccqqq) * relative_q +
+                 16 * u * (k * k + 3 * k * cq + 3 * ccqq + c * rccqqq);
+  }
+  return {2 * e.s, 2 * e.s_first, 2 * e.s_second};
+}
 
 }  // namespace flatlight
 

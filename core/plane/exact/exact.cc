@@ -24,31 +24,86 @@ double SineDifference(const Edge& a, const Edge& b, const Receiver& receiver) {
   return cross * a.q * b.q * (a.c + b.c) / (1 + cosine);
 }
 
+// Adds up light while a ray turns from horizon to horizon.
+template <int kChannels>
+class LightSum {
+ public:
+  LightSum(const Scene& scene, const ExactOptions& options, const Receiver& receiver, ExactValue& value)
+      : coordinate_error_(scene.coordinate_error()),
+        derivatives_(options.derivatives),
+        receiver_(receiver),
+        value_(value) {}
+
+  bool Changes(const Spectrum& after) const {
+    for (int channel = 0; channel < kChannels; ++channel)
+      if (after[channel] != before_[channel]) return true;
+    return false;
+  }
+
+  // Where the next edge is to be written.
+  Edge& Next() { return edges_[next_]; }
+
+  // From the edge in Next() on there is another radiance. A stretch of one radiance counts as a whole, whatever
+  // elements it is made of.
+  void Turn(const Spectrum& after) {
+    const Edge& edge = edges_[next_];
+    const Edge& begin = edges_[1 - next_];
+    const EdgeErrors errors = BoundErrors(edge, receiver_.curvature, coordinate_error_);
+    const EdgeDerivatives derivatives = derivatives_ > 0 ? Derive(edge, receiver_.curvature) : EdgeDerivatives{};
+    const double extent = lit_ ? SineDifference(begin, edge, receiver_) : 0;
+    lit_ = false;
+    for (int channel = 0; channel < kChannels; ++channel) {
+      const double jump = before_[channel] - after[channel];
+      const double size = std::abs(jump);
+      value_.irradiance[channel] += before_[channel] * extent;
+      value_.irradiance_error[channel] += size * errors.s + 4 * kUnitRoundoff * before_[channel] * std::abs(extent);
+      if (derivatives_ >= 1) {
+        value_.gradient[channel] += jump * derivatives.s_first;
+        value_.gradient_error[channel] += size * errors.s_first;
+      }
+      if (derivatives_ >= 2) {
+        value_.hessian[channel] += jump * derivatives.s_second;
+        value_.hessian_error[channel] += size * errors.s_second;
+      }
+      before_[channel] = after[channel];
+      lit_ = lit_ || after[channel] != 0;
+    }
+    next_ = 1 - next_;
+  }
+
+ private:
+  const double coordinate_error_;
+  const int derivatives_;
+  const Receiver& receiver_;
+  ExactValue& value_;
+  Spectrum before_;
+  bool lit_ = false;
+  Edge edges_[2];
+  int next_ = 0;
+};
+
 }  // namespace
 
 ExactSolver::ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions options)
     : scene_(scene), options_(options), gatherer_(scene, bvh), sweep_(scene) {
-  if (options_.occlusion) return;
   for (std::size_t e = 0; e < scene.elements().size(); ++e) {
     const ElementId id = static_cast<ElementId>(e);
-    if (scene.curve_of(id).Emits()) emitters_.push_back(id);
+    const Curve& curve = scene.curve_of(id);
+    if (options_.occlusion) {
+      emissions_.push_back({curve.radiance[0], curve.Emits(), curve.Emits() && curve.two_sided});
+    } else if (curve.Emits()) {
+      emitters_.push_back(id);
+    }
   }
 }
 
 ExactValue ExactSolver::Evaluate(const Receiver& receiver) {
   ExactValue value;
   if (scene_.traits().emitting_curves == 0) return value;
-  if (options_.occlusion) {
-    const std::vector<Part>& parts = gatherer_.Gather(receiver);
-    AddIntervals(sweep_.Run(parts, receiver), parts, receiver, value);
+  if (options_.channels == 1) {
+    Add<1>(receiver, value);
   } else {
-    for (const ElementId emitter : emitters_) {
-      const Parts parts = PartsOf(scene_, emitter, receiver);
-      for (int i = 0; i < parts.count; ++i) {
-        single_.assign(1, parts.part[i]);
-        AddIntervals(sweep_.Run(single_, receiver), single_, receiver, value);
-      }
-    }
+    Add<kMaxChannels>(receiver, value);
   }
   // Rounding must not make light negative; the bound covers the difference.
   for (int channel = 0; channel < options_.channels; ++channel)
@@ -62,38 +117,61 @@ ExactValue ExactSolver::Evaluate(const Receiver& receiver) {
   return value;
 }
 
-void ExactSolver::AddIntervals(const std::vector<VisibleInterval>& intervals, const std::vector<Part>& parts,
-                               const Receiver& receiver, ExactValue& value) const {
-  const auto radiance_of = [&](const VisibleInterval& interval) {
-    if (interval.part == VisibleInterval::kNothing) return Spectrum{};
-    return scene_.curve_of(parts[static_cast<std::size_t>(interval.part)].element).EmittedRadiance(interval.side);
-  };
-  Spectrum before;
-  std::size_t run = 0;  // Where the present radiance began.
-  for (std::size_t i = 0; i < intervals.size(); ++i) {
-    const Spectrum after = radiance_of(intervals[i]);
-    if (after == before) continue;
-    const Edge& edge = intervals[i].begin;
-    const EdgeErrors errors = BoundErrors(edge, receiver.curvature, scene_.coordinate_error());
-    const EdgeDerivatives derivatives = options_.derivatives > 0 ? Derive(edge, receiver.curvature) : EdgeDerivatives{};
-    // A stretch of one radiance counts as a whole, whatever elements it is made of.
-    const double extent = before.IsBlack() ? 0 : SineDifference(intervals[run].begin, edge, receiver);
-    for (int channel = 0; channel < options_.channels; ++channel) {
-      const double jump = before[channel] - after[channel];
-      const double size = std::abs(jump);
-      value.irradiance[channel] += before[channel] * extent;
-      value.irradiance_error[channel] += size * errors.s + 4 * kUnitRoundoff * before[channel] * std::abs(extent);
-      if (options_.derivatives >= 1) {
-        value.gradient[channel] += jump * derivatives.s_first;
-        value.gradient_error[channel] += size * errors.s_first;
-      }
-      if (options_.derivatives >= 2) {
-        value.hessian[channel] += jump * derivatives.s_second;
-        value.hessian_error[channel] += size * errors.s_second;
+template <int kChannels>
+void ExactSolver::Add(const Receiver& receiver, ExactValue& value) {
+  if (options_.occlusion) {
+    const Envelope& envelope = gatherer_.Gather(receiver);
+    if (!envelope.doubtful()) {
+      AddEnvelope<kChannels>(envelope, receiver, value);
+    } else {
+      const std::vector<Part>& parts = gatherer_.PartsInDoubt(receiver);
+      AddIntervals<kChannels>(sweep_.Run(parts, receiver), parts, receiver, value);
+    }
+  } else {
+    for (const ElementId emitter : emitters_) {
+      const Parts parts = PartsOf(scene_, emitter, receiver);
+      for (int i = 0; i < parts.count; ++i) {
+        single_.assign(1, parts.part[i]);
+        AddIntervals<kChannels>(sweep_.Run(single_, receiver), single_, receiver, value);
       }
     }
-    before = after;
-    run = i;
+  }
+}
+
+template <int kChannels>
+void ExactSolver::AddEnvelope(const Envelope& envelope, const Receiver& receiver, ExactValue& value) const {
+  LightSum<kChannels> sum(scene_, options_, receiver, value);
+  for (std::size_t i = 0; i <= envelope.sectors().size(); ++i) {
+    const Sector& sector = envelope.sectors()[i];
+    Spectrum after;
+    if (sector.sight != Sector::kNothing) {
+      const Sight& sight = envelope.SightOf(sector);
+      const Emission& emission = emissions_[static_cast<std::size_t>(sight.element)];
+      if (sight.front ? emission.front : emission.back) {
+        if constexpr (kChannels == 1) {
+          after[0] = emission.first_channel;
+        } else {
+          after = scene_.curve_of(sight.element).radiance;
+        }
+      }
+    }
+    if (!sum.Changes(after)) continue;
+    envelope.SetEdge(sector, sum.Next());
+    sum.Turn(after);
+  }
+}
+
+template <int kChannels>
+void ExactSolver::AddIntervals(const std::vector<VisibleInterval>& intervals, const std::vector<Part>& parts,
+                               const Receiver& receiver, ExactValue& value) const {
+  LightSum<kChannels> sum(scene_, options_, receiver, value);
+  for (const VisibleInterval& interval : intervals) {
+    Spectrum after;
+    if (interval.part != VisibleInterval::kNothing)
+      after = scene_.curve_of(parts[static_cast<std::size_t>(interval.part)].element).EmittedRadiance(interval.side);
+    if (!sum.Changes(after)) continue;
+    sum.Next() = interval.begin;
+    sum.Turn(after);
   }
 }
 

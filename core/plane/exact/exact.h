@@ -46,6 +46,18 @@ class ExactSolver {
   double tests() const { return gatherer_.tests(); }
 
  private:
+  // What the last sum needs of an element, close together.
+  struct Emission {
+    double first_channel;
+    bool front;
+    bool back;
+  };
+
+  template <int kChannels>
+  void Add(const Receiver& receiver, ExactValue& value);
+  template <int kChannels>
+  void AddEnvelope(const Envelope& envelope, const Receiver& receiver, ExactValue& value) const;
+  template <int kChannels>
   void AddIntervals(const std::vector<VisibleInterval>& intervals, const std::vector<Part>& parts,
                     const Receiver& receiver, ExactValue& value) const;
 
@@ -53,6 +65,7 @@ class ExactSolver {
   ExactOptions options_;
   Gatherer gatherer_;
   Sweep sweep_;
+  std::vector<Emission> emissions_;  // By element.
   std::vector<ElementId> emitters_;  // Where occlusion is left out.
   std::vector<Part> single_;
 };

@@ -2,142 +2,176 @@
 #include "core/plane/exact/gather.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/plane/exact/gather.cc"
+#include <hwy/foreach_target.h>
+
+#include "core/plane/exact/node_view-inl.h"
+
+HWY_BEFORE_NAMESPACE();
 namespace flatlight {
-namespace {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Margins of the culling, in keys and relative in distance: far above rounding, far below what would cost time.
-constexpr double kKeyMargin = 1e-10;
-constexpr double kDepthMargin = 1e-10;
-constexpr double kLengthMargin = 1e-13;
-
-// The keys that a box may cover above the horizon, and its distance.
-struct BoxView {
-  double low = 1, high = -1, distance = 0;
-
-  BoxView(const Box& box, const Receiver& receiver) {
-    const Point2 x = receiver.position;
-    const double dx = std::max({box.low.x - x.x, 0.0, x.x - box.high.x});
-    const double dy = std::max({box.low.y - x.y, 0.0, x.y - box.high.y});
-    distance = std::sqrt(dx * dx + dy * dy);
-    double low_tangent = kInfinity, high_tangent = -kInfinity;
-    int above = 0;
-    for (const Point2 corner : {box.low, Point2{box.high.x, box.low.y}, box.high, Point2{box.low.x, box.high.y}}) {
-      const double t = Dot(receiver.tangent, corner - x), n = Dot(receiver.normal, corner - x);
-      low_tangent = std::min(low_tangent, t), high_tangent = std::max(high_tangent, t);
-      if (n <= 0) continue;
-      ++above;
-      const double key = t / (std::abs(t) + n);
-      low = std::min(low, key), high = std::max(high, key);
+// Whether everything between two keys and at this squared distance or beyond is hidden. `bin` is that of `low`.
+HWY_INLINE bool Hides(const Sectors& sectors, std::int32_t bin, float low, float high, float near_squared) {
+  const Floats floats;
+  const auto lows = hn::Set(floats, low), highs = hn::Set(floats, high), nears = hn::Set(floats, near_squared);
+  std::size_t first = sectors.First(static_cast<std::size_t>(bin));
+  std::size_t count = sectors.First(static_cast<std::size_t>(bin) + 1) - first;
+  for (std::size_t half = count / 2; HWY_UNLIKELY(count > 16); half = count / 2) {
+    if (sectors.keys()[first + half] < low) {
+      first += half, count -= half;
+    } else {
+      count = half;
     }
-    if (above == 0) return;
-    // Cut by the horizon (or around the receiver): everything up to the horizon on the sides it reaches.
-    if (above < 4 || distance == 0) {
-      if (low_tangent <= 0) low = -1;
-      if (high_tangent >= 0) high = 1;
-    }
-    low -= kKeyMargin, high += kKeyMargin;
   }
-  bool Empty() const { return low > high; }
-};
+  const float* key = sectors.keys() + first;
+  const float* far_squared = sectors.far_squared() + first;
+  while (true) {
+    const auto reached = hn::And(hn::Le(hn::LoadU(floats, key), highs), hn::Ge(hn::LoadU(floats, key + 1), lows));
+    const auto open = hn::Ge(hn::LoadU(floats, far_squared), nears);
+    if (!hn::AllFalse(floats, hn::And(reached, open))) return false;
+    key += hn::Lanes(floats), far_squared += hn::Lanes(floats);
+    if (HWY_LIKELY(*key > high)) return true;
+  }
+}
 
-}  // namespace
+HWY_INLINE std::int32_t BinOf(float key) {
+  return std::clamp(static_cast<std::int32_t>((key + 1) * Sectors::kBinsPerKey), 0,
+                    static_cast<std::int32_t>(Sectors::kBins) - 1);
+}
 
-const std::vector<Part>& Gatherer::Gather(const Receiver& receiver) {
-  parts_.clear();
-  heap_.clear();
-  intervals_.assign(1, {-1, kInfinity});
-  if (!bvh_.nodes().empty()) Push(0, bvh_.bounds(), receiver);
-  while (!heap_.empty()) {
-    std::pop_heap(heap_.begin(), heap_.end());
-    const Entry entry = heap_.back();
-    heap_.pop_back();
-    // What was found since it was pushed may hide it by now.
-    if (Hidden(entry.low, entry.high, entry.distance)) continue;
-    const BvhNode& node = bvh_.nodes()[entry.node];
-    for (int lane = 0; lane < node.count; ++lane) {
+void Walk(Gatherer& gatherer, const Receiver& receiver) {
+  const Bvh& bvh = gatherer.bvh();
+  if (bvh.nodes().empty()) return;
+  const Sectors& sectors = gatherer.envelope().sectors();
+  const BvhNode* nodes = bvh.nodes().data();
+  const BvhFrame* frames = bvh.frames().data();
+  struct Entry {
+    float near_squared;
+    float low;
+    float high;
+    std::int32_t bin;
+    std::uint32_t node;
+    std::uint32_t frame;
+  };
+  std::array<Entry, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
+  std::size_t size = 0;
+  stack[size++] = {0, -1, 1, 0, 0, 0};
+  std::size_t tests = 0;
+  LaneViews views;
+  const Viewer viewer(receiver);
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    ++tests;
+    // What was found since it was put here may hide it by now.
+    if (Hides(sectors, entry.bin, entry.low, entry.high, entry.near_squared)) continue;
+    const BvhNode& node = nodes[entry.node];
+    if (node.kind == BvhNode::Kind::kFrame) {
+      stack[size] = entry;
+      stack[size].node = node.first, stack[size].frame = node.frame;
+      ++size;
+      continue;
+    }
+    viewer.View(node, frames[entry.frame], views);
+    unsigned open = 0;
+    for (unsigned bits = views.above; bits != 0; bits &= bits - 1) {
+      const unsigned lane = static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
+      ++tests;
+      const bool hidden = Hides(sectors, views.bin[lane], views.low[lane], views.high[lane], views.near_squared[lane]);
+      open |= (hidden ? 0u : 1u) << lane;
+    }
+    const std::size_t base = size;
+    for (; open != 0; open &= open - 1) {
+      const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(open);
       const auto child = node.first + static_cast<std::uint32_t>(lane);
       if (node.kind == BvhNode::Kind::kInner) {
-        Push(child, node.BoxOfLane(lane), receiver);
-      } else {
-        AddElement(bvh_.slots()[child].element, receiver);
+        const Entry view{views.near_squared[lane], views.low[lane], views.high[lane],
+                         views.bin[lane],          child,           entry.frame};
+        std::size_t place = size++;
+        for (; place > base && stack[place - 1].near_squared < view.near_squared; --place)
+          stack[place] = stack[place - 1];
+        stack[place] = view;
+      } else if (const SightBetween* seen = gatherer.See(bvh.slots()[child], node.kind == BvhNode::Kind::kEnds)) {
+        const float low = static_cast<float>(seen->low.key) - kSingle;
+        const float high = static_cast<float>(seen->high.key) + kSingle;
+        const float near_squared = static_cast<float>(seen->sight.near_squared) * (1 - 4 * kSingle);
+        if (!Hides(sectors, BinOf(low), low, high, near_squared)) {
+          gatherer.Add(*seen);
+        }
       }
     }
   }
-  return parts_;
+  gatherer.AddTests(static_cast<double>(tests));
 }
 
-void Gatherer::Push(std::uint32_t node, const Box& box, const Receiver& receiver) {
-  ++tests_;
-  const BoxView view(box, receiver);
-  if (view.Empty() || Hidden(view.low, view.high, view.distance)) return;
-  heap_.push_back({view.distance, view.low, view.high, node});
-  std::push_heap(heap_.begin(), heap_.end());
+}  // namespace HWY_NAMESPACE
+}  // namespace flatlight
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace flatlight {
+
+HWY_EXPORT(Walk);
+
+const Envelope& Gatherer::Gather(const Receiver& receiver) {
+  receiver_ = &receiver;
+  left_handed_ = Cross(receiver.tangent, receiver.normal) < 0;
+  has_own_ = receiver.element != ElementId::kNone;
+  if (has_own_) own_carrier_ = scene_.element(receiver.element).carrier;
+  elements_.clear();
+  used_parts_ = 0;
+  envelope_.Start(receiver);
+  HWY_DYNAMIC_DISPATCH(Walk)(*this, receiver);
+  return envelope_;
 }
 
-void Gatherer::AddElement(std::uint32_t element, const Receiver& receiver) {
-  ++tests_;
-  const BoxView view(BoxOf(scene_.elements()[element], 0), receiver);
-  if (view.Empty() || Hidden(view.low, view.high, view.distance)) return;
-  const Parts parts = PartsOf(scene_, static_cast<ElementId>(element), receiver);
+const SightBetween* Gatherer::See(const Bvh::Slot& slot, bool straight) {
+  const auto element = static_cast<ElementId>(slot.element);
+  if (straight || scene_.element(element).kind == Element::Kind::kSegment) {
+    if (has_own_ && slot.carrier == own_carrier_) return nullptr;
+    SightBetween& next = envelope_.Next();
+    const Seen seen = SeeSegment(*receiver_, slot.a, slot.b, scene_.coordinate_error(), left_handed_, next);
+    next.sight.element = element;
+    if (seen != Seen::kDoubt) return seen == Seen::kPart ? &next : nullptr;
+  }
+  AddParts(element);
+  return nullptr;
+}
+
+void Gatherer::AddParts(ElementId element) {
+  const Parts parts = PartsOf(scene_, element, *receiver_);
+  if (parts.count == 0) return;
+  elements_.push_back(element);
   for (int i = 0; i < parts.count; ++i) {
-    parts_.push_back(parts.part[i]);
-    Cover(parts.part[i], receiver);
+    if (used_parts_ == parts_.size()) parts_.emplace_back();
+    Part& part = parts_[used_parts_++] = parts.part[i];
+    SightBetween& next = envelope_.Next();
+    const Seen seen = SeePart(scene_, *receiver_, part, left_handed_, next);
+    if (envelope_.Hides(next.low.key - next.low.uncertain, next.high.key + next.high.uncertain,
+                        next.sight.near_squared)) {
+      continue;
+    }
+    if (seen == Seen::kPart) {
+      envelope_.Add();
+    } else {
+      envelope_.SetDoubtful();
+    }
   }
 }
 
-std::size_t Gatherer::IntervalAt(double key) const {
-  const auto after = std::upper_bound(intervals_.begin(), intervals_.end(), key,
-                                      [](double k, const Interval& interval) { return k < interval.low; });
-  return after == intervals_.begin() ? 0 : static_cast<std::size_t>(after - intervals_.begin()) - 1;
-}
-
-bool Gatherer::Hidden(double low, double high, double distance) const {
-  const double nearest = distance * (1 - kDepthMargin) - kLengthMargin;
-  for (std::size_t i = IntervalAt(low); i < intervals_.size() && intervals_[i].low <= high; ++i)
-    if (!(intervals_[i].depth < nearest)) return false;
-  return true;
-}
-
-void Gatherer::Cover(const Part& part, const Receiver& receiver) {
-  const double low = std::min(part.first.key, part.last.key) + kKeyMargin;
-  const double high = std::max(part.first.key, part.last.key) - kKeyMargin;
-  if (!(low < high)) return;
-  const Element& element = scene_.element(part.element);
-  const auto distance_at = [&](double key) {
-    const UnitDirection direction(key);
-    return DistanceAlong(element, part, receiver, direction.tangent, direction.normal);
-  };
-  // Between two directions a straight or hollow-free part is no farther than at the farther end; a hollow one may be,
-  // by no more than its own size.
-  const double bulge = part.kind == Part::Kind::kConcave ? element.length : 0;
-  const std::size_t begin = IntervalAt(low);
-  scratch_.clear();
-  std::size_t i = begin;
-  double from = low;
-  double distance_from = distance_at(low);
-  for (; i < intervals_.size() && intervals_[i].low < high; ++i) {
-    const double to = i + 1 < intervals_.size() ? std::min(high, intervals_[i + 1].low) : high;
-    const double distance_to = distance_at(to);
-    if (intervals_[i].low < from) scratch_.push_back({intervals_[i].low, intervals_[i].depth});
-    scratch_.push_back({from, std::min(intervals_[i].depth, std::max(distance_from, distance_to) + bulge)});
-    if (to == high && (i + 1 == intervals_.size() || high < intervals_[i + 1].low))
-      scratch_.push_back({high, intervals_[i].depth});
-    from = to, distance_from = distance_to;
+const std::vector<Part>& Gatherer::PartsInDoubt(const Receiver& receiver) {
+  in_doubt_.clear();
+  for (const ElementId element : elements_) {
+    const Parts parts = PartsOf(scene_, element, receiver);
+    in_doubt_.insert(in_doubt_.end(), parts.part, parts.part + parts.count);
   }
-  const auto first = intervals_.begin() + static_cast<std::ptrdiff_t>(begin);
-  const auto last = intervals_.begin() + static_cast<std::ptrdiff_t>(i);
-  const std::size_t replaced = i - begin;
-  if (scratch_.size() <= replaced) {
-    std::copy(scratch_.begin(), scratch_.end(), first);
-    intervals_.erase(first + static_cast<std::ptrdiff_t>(scratch_.size()), last);
-  } else {
-    std::copy(scratch_.begin(), scratch_.begin() + static_cast<std::ptrdiff_t>(replaced), first);
-    intervals_.insert(last, scratch_.begin() + static_cast<std::ptrdiff_t>(replaced), scratch_.end());
-  }
+  return in_doubt_;
 }
 
 }  // namespace flatlight
+#endif  // HWY_ONCE

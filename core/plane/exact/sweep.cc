@@ -19,6 +19,12 @@ bool Nearer(double r1, double r2, double coordinate_error) { return r1 < r2 - 1e
 constexpr double kTie = 1e-11;
 constexpr double kAside = 1e-8;
 
+// How much nearer, relative, hides for certain: near a silhouette a distance is uncertain by the root of the rounding.
+constexpr double kBehind = 1e-6;
+
+// How far the receiver is moved on to tell curves apart that pass through it.
+constexpr double kOnward = 0x1p-40;
+
 constexpr int kMaxDepth = 40;
 
 }  // namespace
@@ -85,12 +91,16 @@ void Sweep::SortBreaks(double curvature) {
     }
     if (end - begin > 1) {
       const auto at = [&](std::size_t i) { return breaks_.begin() + static_cast<std::ptrdiff_t>(i); };
-      // theta' = kappa - c q: the nearest falls back most.
-      std::stable_sort(at(begin), at(end), [](const Break& l, const Break& r) { return l.edge->q > r.edge->q; });
+      // theta' = kappa - c q: the nearest falls back most. Nothing falls behind the horizon where the ray begins.
+      const auto nearness = [](const Edge& edge) {
+        return edge.kind == Edge::Kind::kHorizon && edge.s < 0 ? std::numeric_limits<double>::infinity() : edge.q;
+      };
+      std::stable_sort(at(begin), at(end),
+                       [&](const Break& l, const Break& r) { return nearness(*l.edge) > nearness(*r.edge); });
       // Equal distances: by the next derivative.
       for (std::size_t i = begin; i < end;) {
         std::size_t j = i + 1;
-        while (j < end && breaks_[j].edge->q >= breaks_[i].edge->q * (1 - 1e-9)) ++j;
+        while (j < end && nearness(*breaks_[j].edge) >= nearness(*breaks_[i].edge) * (1 - 1e-9)) ++j;
         std::stable_sort(at(i), at(j), [&](const Break& l, const Break& r) {
           return Derive(*l.edge, curvature).theta_second < Derive(*r.edge, curvature).theta_second;
         });
@@ -118,8 +128,16 @@ std::int32_t Sweep::Nearest(double key, EdgeOn edge_on) const {
   for (const std::uint32_t p : active_) {
     if (edge_on == EdgeOn::kLeaveOut && IsEdgeOn((*parts_)[p])) continue;
     const double distance = DistanceOf(p, key);
-    if (nearest == VisibleInterval::kNothing || distance < best * (1 - kTie) ||
-        (distance < best * (1 + kTie) && InFront(p, static_cast<std::uint32_t>(nearest), key, distance))) {
+    bool nearer = nearest == VisibleInterval::kNothing || distance < best * (1 - kTie);
+    if (nearest != VisibleInterval::kNothing) {
+      const auto other = static_cast<std::uint32_t>(nearest);
+      if (std::max(distance, best) <= 8 * scene_.coordinate_error()) {
+        nearer = InFrontOnward(p, other, key);
+      } else if (!nearer && distance < best * (1 + kTie)) {
+        nearer = InFront(p, other, key, distance);
+      }
+    }
+    if (nearer) {
       best = distance, nearest = static_cast<std::int32_t>(p);
     }
   }
@@ -165,6 +183,18 @@ bool Sweep::InFront(std::uint32_t p, std::uint32_t other, double key, double dis
   const double aside = starts_here(p) || starts_here(other) ? step : -step;
   const double direction = std::clamp(key + aside, -1.0, 1.0);
   const double r1 = DistanceOf(p, direction), r2 = DistanceOf(other, direction);
+  return r1 != r2 ? r1 < r2 : (*parts_)[p].element < (*parts_)[other].element;
+}
+
+bool Sweep::InFrontOnward(std::uint32_t p, std::uint32_t other, double key) const {
+  Receiver onward = *receiver_;
+  onward.position = onward.position + kOnward * onward.tangent;
+  const UnitDirection direction(key);
+  const auto distance_of = [&](std::uint32_t index) {
+    const Part& part = (*parts_)[index];
+    return DistanceAlong(scene_.element(part.element), part, onward, direction.tangent, direction.normal);
+  };
+  const double r1 = distance_of(p), r2 = distance_of(other);
   return r1 != r2 ? r1 < r2 : (*parts_)[p].element < (*parts_)[other].element;
 }
 
@@ -234,17 +264,19 @@ void Sweep::Emit(const Edge& from, std::int32_t part) {
 Edge Sweep::BreakBetween(const Edge& from, std::int32_t part) const {
   const std::int32_t before = visible_.empty() ? VisibleInterval::kNothing : visible_.back().part;
   if (before == part || before == VisibleInterval::kNothing || part == VisibleInterval::kNothing) return from;
-  // One of the two ends here, as a rule. If not, they cross here, and something hidden behind them ends in the same
-  // direction.
-  const auto ends_here = [&](std::int32_t index) {
+  // One of the two ends here, as a rule. If not, or behind the other, they cross here, and something hidden behind them
+  // ends in the same direction.
+  const auto ends_here = [&](std::int32_t index, std::int32_t other) {
     const Part& p = (*parts_)[static_cast<std::size_t>(index)];
     const auto near = [&](const Edge& edge) {
-      return std::abs(edge.key - from.key) <= 2 * (Uncertainty(edge) + Uncertainty(from)) &&
-             std::abs(edge.q - from.q) <= 1e-9 * from.q;
+      return edge.kind != Edge::Kind::kHorizon &&
+             std::abs(edge.key - from.key) <= 2 * (Uncertainty(edge) + Uncertainty(from)) &&
+             std::abs(edge.q - from.q) <= 1e-9 * from.q &&
+             !(DistanceOf(static_cast<std::uint32_t>(other), from.key) < edge.Distance() * (1 - kBehind));
     };
     return near(p.first) || near(p.last);
   };
-  if (from.kind == Edge::Kind::kHorizon || ends_here(before) || ends_here(part)) return from;
+  if (from.kind == Edge::Kind::kHorizon || ends_here(before, part) || ends_here(part, before)) return from;
   const Element& e = scene_.element((*parts_)[static_cast<std::size_t>(before)].element);
   const Element& f = scene_.element((*parts_)[static_cast<std::size_t>(part)].element);
   if (e.carrier == f.carrier) return from;

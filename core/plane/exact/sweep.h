@@ -46,6 +46,8 @@ class Sweep {
   // Between two edges in one direction.
   void ResolveCoinciding(const Edge& from, const Edge& to);
   bool InFront(std::uint32_t p, std::uint32_t other, double key, double distance) const;
+  // The same of parts that pass through the receiver: which one is nearer as it moves on.
+  bool InFrontOnward(std::uint32_t p, std::uint32_t other, double key) const;
   double DistanceOf(std::uint32_t part, double key) const;
   // How far an edge's key may be off.
   double Uncertainty(const Edge& edge) const;

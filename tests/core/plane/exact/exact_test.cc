@@ -3,67 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "core/scene/scene.h"
 #include "tests/core/plane/exact/oracle.h"
+#include "tests/core/plane/exact/test_scenes.h"
 
 namespace flatlight {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-SceneDescription EmptyScene() {
-  SceneDescription scene;
-  scene.materials.push_back({"black", LambertianDescription{{0}}});
-  return scene;
-}
-
-template <typename Shape>
-void AddCurve(SceneDescription& scene, Shape shape, double radiance = 0, bool two_sided = false) {
-  CurveDescription curve;
-  curve.name = "c" + std::to_string(scene.curves.size());
-  curve.shape = shape;
-  curve.material = "black";
-  if (radiance > 0) curve.emission = EmissionDescription{{radiance}, two_sided};
-  scene.curves.push_back(curve);
-}
-
-void AddProbe(SceneDescription& scene, std::size_t curve, std::uint32_t count, Side side = Side::kFront) {
-  ProbeDescription probe;
-  probe.name = "p" + std::to_string(scene.probes.size());
-  probe.curve = "c" + std::to_string(curve);
-  probe.count = count;
-  probe.side = side;
-  scene.probes.push_back(probe);
-}
-
-std::shared_ptr<const Scene> Build(const SceneDescription& description) {
-  Diagnostics diagnostics;
-  auto scene = BuildScene(description, diagnostics);
-  for (const Diagnostic& d : diagnostics.kept()) ADD_FAILURE() << d.path << ": " << d.message;
-  return scene;
-}
-
-// First channel, world units.
-struct WorldValue {
-  double irradiance, gradient, hessian, irradiance_error, gradient_error, hessian_error;
-};
-
-std::vector<WorldValue> Solve(const Scene& scene, std::size_t probe) {
-  const Bvh bvh(scene);
-  ExactSolver solver(scene, bvh, {});
-  std::vector<WorldValue> values;
-  const double l = scene.frame().radiance_scale, k = scene.frame().scale;
-  for (const Receiver& receiver : scene.probes()[probe].receivers) {
-    const ExactValue v = solver.Evaluate(receiver);
-    values.push_back({v.irradiance[0] * l, v.gradient[0] * l / k, v.hessian[0] * l / k / k, v.irradiance_error[0] * l,
-                      v.gradient_error[0] * l / k, v.hessian_error[0] * l / k / k});
-  }
-  return values;
-}
 
 // Compares every point of every probe of the scene with the oracle.
 struct Agreement {
@@ -218,27 +170,6 @@ TEST(ExactTest, DerivativesAtAnEventAreThoseBeyondIt) {
   }
 }
 
-double Uniform(std::mt19937_64& random, double low, double high) {
-  return low + (high - low) * (static_cast<double>(random() >> 11) * 0x1p-53);
-}
-
-Point2 RandomPoint(std::mt19937_64& random) { return {Uniform(random, -1, 1), Uniform(random, -1, 1)}; }
-
-void AddRandomCurve(SceneDescription& scene, std::mt19937_64& random, bool arcs) {
-  const double radiance = random() % 2 == 0 ? Uniform(random, 0.5, 2) : 0;
-  const bool two_sided = random() % 3 == 0;
-  if (arcs && random() % 2 == 0) {
-    const double sweep = (random() % 2 == 0 ? 1 : -1) * (random() % 4 == 0 ? 2 * kPi : Uniform(random, 0.2, 6.2));
-    AddCurve(scene, ArcDescription{RandomPoint(random), Uniform(random, 0.05, 0.7), Uniform(random, -7, 7), sweep},
-             radiance, two_sided);
-  } else {
-    const Point2 a = RandomPoint(random);
-    const double length = random() % 2 == 0 ? 0.3 : 1.5;
-    AddCurve(scene, SegmentDescription{a, a + length * Vector2{Uniform(random, -1, 1), Uniform(random, -1, 1)}},
-             radiance, two_sided);
-  }
-}
-
 // What is known one-sidedly: the value at a point is the limit of the values beyond it.
 void ExpectOneSided(const SceneDescription& description, const std::string& what) {
   constexpr double kStep = 1e-7;
@@ -284,14 +215,6 @@ TEST(ExactTest, GridScenesAreOneSidedAtEveryEvent) {
     ExpectOneSided(scene, "round " + std::to_string(round));
     if (HasFailure()) return;
   }
-}
-
-SceneDescription WithFreePoint(SceneDescription scene, Point2 position) {
-  ProbeDescription probe;
-  probe.name = "p";
-  probe.points.push_back({position, {0, 1}});
-  scene.probes.push_back(probe);
-  return scene;
 }
 
 TEST(ExactTest, AWallSeenEdgeOnThatCrossesTheLampHidesASliver) {
@@ -349,6 +272,47 @@ TEST(ExactTest, ACurveThroughTheReceiverStandsOnItsLeft) {
   // A dome that ends there with an upright tangent instead: its near part covers less the nearer one looks, to a limit.
   scene.curves[1].shape = ArcDescription{{-1, 0}, 1, 0, kPi};
   EXPECT_NEAR(Solve(*Build(scene), 0)[0].irradiance, 1, 1e-5);
+}
+
+// A wall through the receiver covers its left; where a plate crosses the wall light begins, not at the wall's end
+// behind.
+TEST(ExactTest, AWallThroughTheReceiverEndsWhereAPlateCrossesIt) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, SegmentDescription{{-1, 0}, {1, 0}});
+  AddCurve(scene, SegmentDescription{{-0.2, -0.4}, {0.2, 0.4}});
+  AddCurve(scene, SegmentDescription{{1, 0.2}, {-1, 0.2}}, 1);
+  AddProbe(scene, 0, 1);
+  const WorldValue value = Solve(*Build(scene), 0)[0];
+  const auto sine = [](double x) { return x / std::hypot(x, 0.2); };
+  const auto slope = [](double x) { return -0.04 / std::pow(std::hypot(x, 0.2), 3); };
+  EXPECT_NEAR(value.irradiance, sine(1) - sine(0.1), 1e-14);
+  EXPECT_NEAR(value.gradient, slope(1) - slope(0.1), 1e-12);
+}
+
+// Two curves through the receiver: beyond it, one hides the other.
+TEST(ExactTest, OfTwoCurvesThroughTheReceiverTheOneAheadHides) {
+  for (const bool bright_first : {false, true}) {
+    SceneDescription scene = EmptyScene();
+    AddCurve(scene, SegmentDescription{{-1, 0}, {1, 0}});
+    const SegmentDescription ahead{{-0.5, -0.5}, {0.5, 0.5}}, behind{{0.5, -0.5}, {-0.5, 0.5}};
+    if (bright_first) AddCurve(scene, ahead, 1, true);
+    AddCurve(scene, behind);
+    if (!bright_first) AddCurve(scene, ahead, 1, true);
+    AddProbe(scene, 0, 1);
+    EXPECT_NEAR(Solve(*Build(scene), 0)[0].irradiance, 1 + std::sqrt(0.5), 1e-14) << bright_first;
+  }
+}
+
+// A wall crosses the lamp exactly where the end of a plate behind both is seen, whatever is found first.
+TEST(ExactTest, AHiddenEndBehindACrossingIsNotItsBreakInAnyOrder) {
+  const SegmentDescription curves[] = {
+      {{1, 1}, {-1, 1}}, {{0.5, 0.7}, {0.5, 1.5}}, {{1, 2}, {2, 1.9}}, {{1.5, 3}, {0, 3}}};
+  int order[] = {0, 1, 2, 3};
+  do {
+    SceneDescription scene = EmptyScene();
+    for (const int i : order) AddCurve(scene, curves[i], i == 0 ? 1 : 0, true);
+    ExpectOneSided(WithFreePoint(scene, {0, 0}), "hidden end");
+  } while (std::next_permutation(std::begin(order), std::end(order)));
 }
 
 // Curves may cross, be receivers, emitters and occluders at once.
