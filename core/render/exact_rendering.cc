@@ -87,12 +87,28 @@ void ExactRendering::Advance(Executor& executor, const Cancellation& cancellatio
 }
 
 bool ExactRendering::Work(std::size_t first, std::size_t last, const Cancellation& cancellation) {
-  ExactSolver solver(*scene_, caster_->bvh(), options_);
-  for (std::size_t i = first; i < last; ++i) {
-    if (cancellation.cancelled()) return false;
-    values_[i] = solver.Evaluate(*points_[i]);
+  std::unique_ptr<ExactSolver> solver = TakeSolver();
+  std::size_t i = first;
+  for (; i < last && !cancellation.cancelled(); ++i) values_[i] = solver->Evaluate(*points_[i]);
+  ReturnSolver(std::move(solver));
+  return i == last;
+}
+
+std::unique_ptr<ExactSolver> ExactRendering::TakeSolver() {
+  {
+    const std::lock_guard<std::mutex> lock(solvers_mutex_);
+    if (!idle_solvers_.empty()) {
+      std::unique_ptr<ExactSolver> solver = std::move(idle_solvers_.back());
+      idle_solvers_.pop_back();
+      return solver;
+    }
   }
-  return true;
+  return std::make_unique<ExactSolver>(*scene_, caster_->bvh(), options_);
+}
+
+void ExactRendering::ReturnSolver(std::unique_ptr<ExactSolver> solver) {
+  const std::lock_guard<std::mutex> lock(solvers_mutex_);
+  idle_solvers_.push_back(std::move(solver));
 }
 
 RenderProgress ExactRendering::Progress() const {

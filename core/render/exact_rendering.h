@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -29,6 +30,9 @@ class ExactRendering final : public Rendering {
  private:
   // Evaluates [first, last); false if cancelled.
   bool Work(std::size_t first, std::size_t last, const Cancellation& cancellation);
+  // Solvers keep their working memory from one shard to the next: there are as many as ever worked at once.
+  std::unique_ptr<ExactSolver> TakeSolver();
+  void ReturnSolver(std::unique_ptr<ExactSolver> solver);
 
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const RayCaster> caster_;
@@ -36,6 +40,8 @@ class ExactRendering final : public Rendering {
   int derivatives_;  // Asked for, whatever is computed.
   bool dark_;        // Nothing emits: the values are there already.
   int max_threads_;
+  std::mutex solvers_mutex_;
+  std::vector<std::unique_ptr<ExactSolver>> idle_solvers_;
   std::vector<const Receiver*> points_;
   std::vector<ExactValue> values_;  // By point.
   std::size_t done_points_ = 0;     // From the first on.
