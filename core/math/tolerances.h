@@ -18,13 +18,18 @@ inline constexpr double kTouchDistance = 8 * kUnitRoundoff;
 // the direction of a short piece is uncertain.
 inline constexpr double kOverlapDistance = 4 * kTouchDistance;
 
-// A free probe point on a curve whose normal is not the curve's is moved off the curve by this, to the side its normal
-// points to. The error of irradiance is of this order, relative to the nearest vertex's distance.
-inline constexpr double kLiftDistance = 0x1p-42;
+// A free probe point on a curve whose normal is not the curve's is moved off the curve by so many times the distance
+// within which it lies on it, to the side its normal points to. The error of irradiance is of this order, relative to
+// the nearest vertex's distance; above an arc it is of the order of the square root, relative to the radius.
+inline constexpr double kLiftTouches = 128;
 
 // Where another curve passes through a receiver, light is that just beyond it, toward increasing arc length: rays start
 // so many touch distances farther on. The error is of this order, relative to the distance of the nearest vertex.
 inline constexpr double kOnwardTouches = 1024;
+
+// A curve that leaves the receiver at a small angle, or touches it, is still not told from it there: rays then start
+// farther on, up to this. Smaller: a circle of radius 1 that touches the receiver is on neither side of it.
+inline constexpr double kFarthestOnward = 0x1p-20;
 
 }  // namespace flatlight
 

@@ -60,15 +60,19 @@ Crossings CrossArc(const Element& arc, Point2 origin, Vector2 direction, double 
 ElementCrossings CrossElements(const Element& e, const Element& f, double touch) {
   ElementCrossings common;
   if (e.kind == Element::Kind::kArc && f.kind == Element::Kind::kArc) {
-    const Vector2 between = f.center - e.center;
-    const double squared = LengthSquared(between);
+    // Both circles written about an end each: E(q) = q.u + |q|^2/(2 r) = 0 with q = p - e.a, and the same for f. What
+    // is left of E/r_f - F/r_e is the line through their common points, m.q = k: no digits are lost as a radius grows.
+    const double bend_e = 1 / e.radius, bend_f = 1 / f.radius;
+    const Vector2 d = f.a - e.a;
+    const Vector2 m = bend_f * e.radial_a - bend_e * f.radial_a + (bend_e * bend_f) * d;
+    const double squared = LengthSquared(m);
     if (squared == 0) return {};
-    // Where the circles' common chord meets the line of their centres, and half the chord.
-    const double along = 0.5 * (1 + (e.radius - f.radius) * (e.radius + f.radius) / squared);
-    const double half_squared = e.radius * e.radius / squared - along * along;
-    if (half_squared < 0) return {};
-    for (const double half : {-std::sqrt(half_squared), std::sqrt(half_squared)}) {
-      const Point2 point = e.center + along * between + half * Left(between);
+    const double k = bend_e * (0.5 * bend_f * LengthSquared(d) - Dot(d, f.radial_a));
+    const Point2 origin = e.a + k / squared * m;
+    const Vector2 along = Left(m) / std::sqrt(squared);
+    const Crossings crossings = CrossArc(e.radius < f.radius ? e : f, origin, along, touch);
+    for (int i = 0; i < crossings.count; ++i) {
+      const Point2 point = origin + crossings.t[i] * along;
       if (OnArc(e, point - e.a, touch) && OnArc(f, point - f.a, touch)) common.point[common.count++] = point;
     }
     return common;

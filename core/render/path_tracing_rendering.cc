@@ -15,17 +15,26 @@
 namespace flatlight {
 namespace {
 
+// Where a receiver lies on another curve as well, what counts is what lies beyond, toward increasing arc length.
+Receiver MovedOnward(const Receiver& receiver, const RayCaster& caster) {
+  if (!caster.Touches({receiver.position, receiver.element})) return receiver;
+  Receiver moved = receiver;
+  double step = kOnwardTouches * caster.scene().touch_distance();
+  do {
+    moved.position =
+        receiver.position + step * receiver.tangent + 0.5 * receiver.curvature * step * step * receiver.normal;
+    step *= 2;
+  } while (step <= kFarthestOnward && caster.Touches({moved.position, moved.element}));
+  return moved;
+}
+
 class PathSampler final : public PointSampler {
  public:
   PathSampler(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
               const PathTracingOptions& options, std::uint32_t seed)
       : scene_(std::move(scene)), caster_(std::move(caster)), tracer_(caster_, options), seed_(seed) {
     for (const Receiver* point : PointsOfProbes(*scene_)) {
-      points_.push_back(*point);
-      // On another curve as well: what counts is what lies beyond, toward increasing arc length.
-      if (caster_->Touches({point->position, point->element})) {
-        points_.back().position = point->position + kOnwardTouches * scene_->touch_distance() * point->tangent;
-      }
+      points_.push_back(MovedOnward(*point, *caster_));
     }
   }
 

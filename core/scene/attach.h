@@ -8,9 +8,9 @@
 
 namespace flatlight {
 
-// Finds the element each receiver lies on (within `near` of it), by position alone, and sets Receiver::element. One
-// whose normal is not that of the curve it lies on (a free point may be turned) gets none; it is lifted off the curve
-// toward its normal instead.
+// Finds the element each receiver lies on (within `near` of it), by position alone, and sets Receiver::element:
+// where two meet, to that which goes on along the receiver's tangent. One whose normal is not that of the curve it lies
+// on (a free point may be turned) gets none; it is lifted off the curve toward its normal instead.
 void AttachReceivers(const std::vector<Element>& elements, double near, std::vector<Receiver*> receivers);
 
 }  // namespace flatlight

@@ -43,6 +43,11 @@ Vector2 Radial(const ArcDescription& arc, double fraction) {
   return {start.cos * turn.cos - start.sin * turn.sin, start.sin * turn.cos + start.cos * turn.sin};
 }
 
+// From an arc's a to its b; `middle` is the radial direction halfway.
+Vector2 Chord(const Element& arc, Vector2 middle) {
+  return 2 * arc.radius * SinCos(0.5 * arc.sweep_angle).sin * Left(middle);
+}
+
 void AddShape(const CurveDescription& curve, Box& box) {
   if (const auto* segment = std::get_if<SegmentDescription>(&curve.shape)) {
     box.Add(segment->a), box.Add(segment->b);
@@ -99,7 +104,13 @@ void SceneBuilder::Normalise() {
       for (const ProbePointDescription& point : probe.points) box.Add(point.position);
   }
   Frame& frame = scene_->frame_;
-  frame.origin = {0.5 * box.low_x + 0.5 * box.high_x, 0.5 * box.low_y + 0.5 * box.high_y};
+  const Point2 middle{0.5 * box.low_x + 0.5 * box.high_x, 0.5 * box.low_y + 0.5 * box.high_y};
+  const double size =
+      std::max({box.high_x - middle.x, middle.x - box.low_x, box.high_y - middle.y, middle.y - box.low_y});
+  // No coordinate rounds: a scene around or near the world's origin keeps it, and from a farther one every difference
+  // is exact (Sterbenz 1974: for numbers of one sign within a factor of 2).
+  const auto origin = [&](double center) { return std::abs(center) < 2 * size ? 0 : center; };
+  frame.origin = {origin(middle.x), origin(middle.y)};
   const double half = std::max({box.high_x - frame.origin.x, frame.origin.x - box.low_x, box.high_y - frame.origin.y,
                                 frame.origin.y - box.low_y});
   frame.scale = half > 0 ? PowerOfTwoAbove(half) : 1;
@@ -178,26 +189,30 @@ void SceneBuilder::AddArc(std::size_t curve, const ArcDescription& arc) {
   Element piece;
   piece.kind = Element::Kind::kArc;
   piece.curve = static_cast<CurveId>(curve);
-  piece.carrier = static_cast<std::uint32_t>(pieces_.size());
   piece.center = ToFrame(arc.center);
   piece.radius = arc.radius / scene_->frame_.scale;
+  piece.carrier =
+      circles_.try_emplace({piece.center.x, piece.center.y, piece.radius}, static_cast<std::uint32_t>(pieces_.size()))
+          .first->second;
   piece.sweep_angle = arc.sweep_angle / count;
   piece.length = std::abs(piece.sweep_angle) * piece.radius;
   const bool closed = std::abs(arc.sweep_angle) >= 4 * kQuarter;
   const Vector2 first = Radial(arc, 0);
   const auto on_circle = [&](Vector2 radial) { return piece.center + piece.radius * radial; };
-  if (LengthSquared(on_circle(first) - on_circle(Radial(arc, 1.0 / count))) < 1e-280) {
-    diagnostics_.Add("plane.curves[" + std::to_string(curve) + "].arc",
-                     "is too short to be told from a point beside the size and place of the whole scene");
-  }
   piece.radial_b = first;
   piece.b = on_circle(first);
   for (int i = 0; i < count; ++i) {
     piece.a = piece.b;
     piece.radial_a = piece.radial_b;
     piece.radial_b = closed && i + 1 == count ? first : Radial(arc, (i + 1.0) / count);
-    piece.b = on_circle(piece.radial_b);
+    // From the centre of a wide arc, which may be as far away as its radius, both ends would round on their own: by
+    // more than the arc bulges.
+    piece.b = piece.radius > 1 ? piece.a + Chord(piece, Radial(arc, (i + 0.5) / count)) : on_circle(piece.radial_b);
     pieces_.push_back(piece);
+  }
+  if (LengthSquared(piece.b - piece.a) < 1e-280) {
+    diagnostics_.Add("plane.curves[" + std::to_string(curve) + "].arc",
+                     "is too short to be told from a point beside the size and place of the whole scene");
   }
 }
 

@@ -3,6 +3,9 @@
 #ifndef FLATLIGHT_CORE_SCENE_BUILDER_H_
 #define FLATLIGHT_CORE_SCENE_BUILDER_H_
 
+#include <array>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -37,6 +40,8 @@ class SceneBuilder {
   std::shared_ptr<Scene> scene_;
   std::vector<Element> pieces_;             // Of all curves, overlapping or not.
   std::vector<std::uint32_t> first_piece_;  // Of each curve, and one past the last.
+  // Carriers by centre and radius: arcs of one circle share theirs, whatever curves they belong to.
+  std::map<std::array<double, 3>, std::uint32_t> circles_;
 };
 
 }  // namespace flatlight

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/scene/element_frame.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/math/trig.h"
@@ -45,7 +46,13 @@ double DistanceTo(const Element& element, Point2 p) {
   if (t >= 1) return Length(p - element.b);
   const double side = Cross(along, from_a) / Length(along);
   if (element.kind == Element::Kind::kSegment) return std::abs(side);
-  if (side * element.Orientation() > 0) return side * element.Orientation();  // On the chord's empty side.
+  // On the chord's empty side, beyond the radii to the ends, an end is nearest.
+  const Vector2 from_center = element.radial_a + from_a / element.radius;
+  const double turn = element.Orientation();
+  if (side * turn > 0 &&
+      (turn * Cross(element.radial_a, from_center) < 0 || turn * Cross(from_center, element.radial_b) < 0)) {
+    return std::min(Length(from_a), Length(p - element.b));
+  }
   // The circle's equation about a, q.u + |q|^2/(2 r), is the distance to first order.
   return std::abs(Dot(from_a, element.radial_a) + LengthSquared(from_a) / (2 * element.radius));
 }

@@ -21,7 +21,8 @@ ElementFrame FrameAt(const Element& element, double fraction);
 // Unit normal of the front at a point of the element.
 Vector2 FrontNormal(const Element& element, Point2 on_element);
 
-// From a point to the nearest point of the element; for arcs to first order, exact near the arc.
+// From a point to the nearest point of the element; for arcs to first order, exact near the arc, and nowhere less than
+// half of it.
 double DistanceTo(const Element& element, Point2 p);
 
 }  // namespace flatlight

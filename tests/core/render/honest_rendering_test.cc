@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "core/render/rendering.h"
@@ -125,6 +126,34 @@ TEST(HonestRenderingTest, StoppingAtATargetDoesNotBiasRareBrightLight) {
   }
   const double variance = squares + kRuns * kRuns * std::pow(truth.field->probes[0].standard_error[0], 2);
   EXPECT_LT(std::abs(sum), 5 * std::sqrt(variance)) << sum / kRuns << " of " << mean;
+}
+
+// A free point exactly where two pieces of floor meet, whose directions agree to 1e-8: rays must leave both of them.
+TEST(HonestRenderingTest, AFloorOfTwoPiecesIsAsLitAsOneAtItsJoint) {
+  const Point2 joint{-0.4595569065160034, 0.2181846216735593};
+  SceneMaker maker;
+  maker.Segment("after", joint, {-0.45096422995486884, 0.379220286681});
+  maker.Segment("before", {-0.48533494, -0.26492}, joint);
+  maker.Segment("lamp", {1, 0.8}, {0.4, -0.6}, {.radiance = {1}, .two_sided = true});
+  maker.PointProbe(joint, {1.28828532006, -0.0687414124891});
+  const auto scene = maker.Build();
+  Settings exact;
+  exact.max_bounces = 0;
+  const double truth = Render(scene, exact).field->probes[0].irradiance[0];
+  EXPECT_GT(truth, 1);
+  EXPECT_NEAR(Render(scene, Sampled(64)).field->probes[0].irradiance[0], truth, 1e-9);
+}
+
+// A dark circle that stands on the floor at the probe covers it: to the left of the circle's foot as to the right, but
+// toward increasing arc length it must not be seen from inside.
+TEST(HonestRenderingTest, ACircleThatTouchesThePointIsSeenFromOutside) {
+  for (const double radius : {0.357787840871518, 0.25, 0.6}) {
+    SceneMaker maker;
+    maker.Segment("floor", {-2, -1.5}, {2, -1.5});
+    maker.Arc("circle", {{-0.30213267, -1.5 + radius}, radius, -2, 2 * std::numbers::pi}, {.radiance = {1}});
+    maker.PointProbe({-0.30213267, -1.5}, {0, 1});
+    EXPECT_EQ(Render(maker.Build(), Sampled(1024)).field->probes[0].irradiance[0], 0) << radius;
+  }
 }
 
 }  // namespace
