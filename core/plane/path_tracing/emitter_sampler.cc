@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/tolerances.h"
 #include "core/scene/element_frame.h"
 
 namespace flatlight {
@@ -37,12 +38,17 @@ EmitterSampler::EmitterSampler(std::shared_ptr<const Scene> scene) : scene_(std:
 }
 
 std::size_t EmitterSampler::DropUnseen() {
-  const auto unseen = [this](const Piece& piece) {
+  // What passes through a receiver is seen from a little farther on.
+  const double near = 2 * kOnwardTouches * scene_->touch_distance();
+  const auto sees = [&](const Receiver& receiver, const Piece& piece) {
+    const Vertex vertex = VertexAt(*scene_, receiver);
+    return RangeOf(piece.element, piece.sides, vertex).kind != EmitterRange::Kind::kNone ||
+           (vertex.carrier != piece.element.carrier && DistanceTo(piece.element, receiver.position) <= near);
+  };
+  const auto unseen = [&](const Piece& piece) {
     for (const Probe& probe : scene_->probes()) {
-      for (const Receiver& receiver : probe.receivers) {
-        if (RangeOf(piece.element, piece.sides, VertexAt(*scene_, receiver)).kind != EmitterRange::Kind::kNone)
-          return false;
-      }
+      for (const Receiver& receiver : probe.receivers)
+        if (sees(receiver, piece)) return false;
     }
     return true;
   };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "core/scene/element_frame.h"
 #include "tests/bench/stress/brute_force.h"
@@ -83,11 +85,15 @@ Failure CheckTree(const SceneDescription& description, std::uint64_t seed, Tally
   const Built built(description);
   if (!built.scene || built.scene->elements().empty()) return std::nullopt;
   Random random(seed);
+  std::vector<Ray> batch;
+  std::vector<std::optional<Hit>> hits;
   const int rays = built.scene->elements().size() > 200 ? 30 : 60;
   for (int i = 0; i < rays; ++i) {
     const SurfacePoint from = AnyPlace(built, random);
     const Vector2 direction = AnyDirection(built, from, random);
     const std::optional<Hit> hit = built.caster->ClosestHit(from, direction);
+    batch.push_back({from, direction});
+    hits.push_back(hit);
     const std::optional<BruteHit> brute = BruteClosestHit(*built.scene, from, direction);
     const std::string where =
         Text("from (", from.position.x, ", ", from.position.y, ") element ", static_cast<std::uint32_t>(from.element),
@@ -112,6 +118,15 @@ Failure CheckTree(const SceneDescription& description, std::uint64_t seed, Tally
     }
     if (built.caster->Touches(from) != BruteTouches(*built.scene, from)) return where + "Touches differs";
     tally.counts["rays"] += 3;
+  }
+  // In a batch the same.
+  std::vector<std::optional<Hit>> together(batch.size());
+  built.caster->ClosestHits(batch, together);
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    if (together[i].has_value() != hits[i].has_value() ||
+        (hits[i] && (together[i]->distance != hits[i]->distance || together[i]->element != hits[i]->element))) {
+      return Text("ray ", i, " alone finds ", Describe(hits[i]), ", in a batch ", Describe(together[i]));
+    }
   }
   return std::nullopt;
 }

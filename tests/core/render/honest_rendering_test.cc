@@ -156,5 +156,14 @@ TEST(HonestRenderingTest, ACircleThatTouchesThePointIsSeenFromOutside) {
   }
 }
 
+// A free point on a lamp, facing along it: just beyond, on the lamp's front, it sees the half of it that lies ahead.
+TEST(HonestRenderingTest, ALampThroughThePointIsNotTakenForUnseen) {
+  SceneMaker maker;
+  maker.Segment("lamp", {-0.9, -1}, {-0.9, -0.4}, {.radiance = {1}});
+  maker.PointProbe({-0.9, -0.5}, {0, -1});
+  const ProbeField field = Render(maker.Build(), Sampled(64)).field->probes[0];
+  EXPECT_NEAR(field.irradiance[0], 1, 1e-9);
+}
+
 }  // namespace
 }  // namespace flatlight
