@@ -8,6 +8,7 @@
 #include "server/convert/result_convert.h"
 #include "server/convert/scene_reader.h"
 #include "server/gallery/gallery.h"
+#include "server/service/machine.h"
 #include "server/service/page.h"
 #include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
@@ -132,6 +133,8 @@ v1::GetCapabilitiesResponse GetCapabilities(const Backend& backend) {
   limits.set_max_jobs(backend.limits.max_jobs);
   limits.set_max_watches(backend.limits.max_watches);
   response.set_threads(static_cast<std::uint32_t>(backend.threads));
+  response.set_processor(ProcessorModel());
+  response.set_processors(UsableProcessors());
   return response;
 }
 

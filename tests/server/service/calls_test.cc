@@ -332,6 +332,17 @@ TEST_F(CallsTest, GalleryScenesStay) {
   EXPECT_EQ(ReasonOf(server.scenes().DeleteScene(&context, request, &response)), "GALLERY_SCENE");
 }
 
+TEST_F(CallsTest, TheMachineIsTold) {
+  LoopbackServer server(Options());
+  TestContext context;
+  v1::GetCapabilitiesResponse capabilities;
+  ASSERT_TRUE(server.info().GetCapabilities(&context, {}, &capabilities).ok());
+  EXPECT_GE(capabilities.processors(), 1U);
+  EXPECT_LE(capabilities.processors(), std::thread::hardware_concurrency());
+  EXPECT_GE(capabilities.threads(), 1U);
+  EXPECT_EQ(capabilities.processor().find('\n'), std::string::npos);
+}
+
 TEST_F(CallsTest, AMessageOverTheLimitIsRefusedWithTheLimit) {
   LoopbackServer server(Options());
   TestContext info_context;
