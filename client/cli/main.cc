@@ -22,11 +22,12 @@ ExitCode Fail(const absl::Status& status) {
 }
 
 // Gives standard streams that are closed a place that is empty and cannot be written to: or else the next file or
-// socket to be opened would take their number.
+// socket to be opened would take their number. Before everything else, as gRPC opens one when it is loaded.
 void FillClosedStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(stream, F_GETFD) < 0) open("/dev/null", O_RDONLY);
 }
+__attribute__((section(".preinit_array"), used)) void (*fill_closed_streams)() = FillClosedStreams;
 
 ExitCode Main(int argc, char** argv) {
   const auto line = ParseCommandLine(argc, argv, FLATLIGHT_VERSION);
@@ -44,7 +45,6 @@ ExitCode Main(int argc, char** argv) {
 }  // namespace flatlight
 
 int main(int argc, char** argv) {
-  flatlight::FillClosedStreams();
   // Broken pipes and file size limits are errors of the write that meets them.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);

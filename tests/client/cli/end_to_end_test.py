@@ -261,6 +261,11 @@ class EndToEnd(unittest.TestCase):
             self.assertEqual(run.returncode, 5, run.stderr)
             self.assertIn("standard output could not be written: No space left", run.stderr)
 
+    def test_standard_input_that_is_closed(self):
+        for command in ("validate", "render"):
+            run = self.run_cli(command, "-", status=2, preexec_fn=lambda: os.close(0))
+            self.assertEqual(run.stderr, "flatlight: standard input is empty\n")
+
     def test_standard_output_that_is_closed(self):
         for arguments in (["scenes"], ["render", "gallery:unit-light", "--method", "exact"]):
             run = self.run_cli(*arguments, status=5, preexec_fn=lambda: os.close(1))
