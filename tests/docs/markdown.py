@@ -49,6 +49,7 @@ def _without_chance(line):
     line = re.sub(r"--threads [0-9]+", "--threads COUNT", line)
     line = re.sub(r"NUMBER (us|ms|s|min|h)\b", "TIME", line)
     line = re.sub(r"NUMBER ([kM] )?rays", "NUMBER rays", line)
+    line = re.sub(r"\b(NUMBER|[0-9]+) [kMG]\b", "NUMBER", line)
     return re.sub(r"  +", "  ", line.rstrip())
 
 

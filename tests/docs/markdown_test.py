@@ -46,6 +46,7 @@ class MarkdownTest(unittest.TestCase):
         job, other = "f8a5cd01-ae29-43d2-addf-bdd9653fb02a", "01234567-89ab-43d2-addf-0123456789ab"
         self.assertTrue(markdown.matches([f"{job}  8 s  a"], [f"{other}  12.5 s    a"]))
         self.assertTrue(markdown.matches(["--threads 2, error 6.6 %"], ["--threads 8, error 7 %"]))
+        self.assertTrue(markdown.matches(["efficiency 1.03 M"], ["efficiency 980 k"]))
         self.assertFalse(markdown.matches(["7 rays"], ["8 rays"]))
         self.assertFalse(markdown.matches(["0.5 equal"], ["0.5 differs"]))
 

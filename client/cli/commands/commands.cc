@@ -8,9 +8,19 @@ namespace flatlight {
 
 CommandResult RunCommand(const CommandLine& line, Interruption& interruption) {
   static const std::map<std::string, CommandResult (*)(const CommandLine&, Interruption&)> kCommands = {
-      {"render", Render},   {"submit", Submit},     {"watch", Watch},           {"jobs", Jobs},
-      {"show", Show},       {"fetch", Fetch},       {"cancel", Cancel},         {"scenes", Scenes},
-      {"explain", Explain}, {"validate", Validate}, {"compare", CompareResults}};
+      {"render", Render},
+      {"submit", Submit},
+      {"watch", Watch},
+      {"jobs", Jobs},
+      {"show", Show},
+      {"fetch", Fetch},
+      {"cancel", Cancel},
+      {"scenes", Scenes},
+      {"explain", Explain},
+      {"validate", Validate},
+      {"compare", CompareResults},
+      {"bench", BenchMethods},
+      {"bench compare", CompareBenchmarks}};
   return kCommands.at(line.command)(line, interruption);
 }
 

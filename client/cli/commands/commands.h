@@ -33,6 +33,12 @@ CommandResult Validate(const CommandLine& line, Interruption& interruption);
 // compare_command.cc
 CommandResult CompareResults(const CommandLine& line, Interruption& interruption);
 
+// bench_command.cc
+CommandResult BenchMethods(const CommandLine& line, Interruption& interruption);
+
+// bench_compare_command.cc
+CommandResult CompareBenchmarks(const CommandLine& line, Interruption& interruption);
+
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_CLIENT_CLI_COMMANDS_COMMANDS_H_

@@ -38,6 +38,13 @@ class Console {
     NoteError();
   }
 
+  // A line on how far the work is, in other words.
+  void ShowLine(const std::string& line) {
+    if (quiet_) return;
+    progress_.ShowLine(line, std::chrono::steady_clock::now(), TerminalWidth(out_));
+    NoteError();
+  }
+
   void EndProgress() { progress_.Clear(); }
 
   // Why something that was said could not be written to standard output: the first reason.

@@ -8,9 +8,6 @@
 
 namespace flatlight {
 
-// The settings that are set, as options: "--method path-tracing --samples 1024".
-std::string SettingsText(const v1::Settings& settings);
-
 // Before a render: what will be done, and what is left out.
 std::string ShortPlanText(const v1::Plan& plan);
 

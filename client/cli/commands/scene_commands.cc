@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +8,7 @@
 #include "client/cli/commands/session.h"
 #include "client/cli/formats/json_text.h"
 #include "client/cli/outputs/outputs.h"
+#include "client/cli/scenes/scene_list.h"
 #include "client/cli/scenes/scene_upload.h"
 #include "client/cli/text/numbers.h"
 #include "client/cli/text/text_table.h"
@@ -18,21 +19,6 @@ namespace {
 CommandResult Answer(const std::string& text) {
   if (absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
   return ExitCode::kDone;
-}
-
-absl::StatusOr<v1::ListScenesResponse> ListScenes(Connection& connection) {
-  v1::ListScenesResponse all;
-  v1::ListScenesRequest request;
-  request.set_page_size(1000);
-  do {
-    v1::ListScenesResponse response;
-    const absl::Status status =
-        connection.Call(connection.scenes(), &v1::SceneService::Stub::ListScenes, request, response);
-    if (!status.ok()) return status;
-    all.mutable_scenes()->MergeFrom(response.scenes());
-    request.set_page_token(response.next_page_token());
-  } while (!request.page_token().empty());
-  return all;
 }
 
 std::string ShortName(const v1::SceneInfo& scene) {
@@ -77,6 +63,24 @@ std::string TraitsText(const SceneArgument& scene, const v1::ValidateSceneRespon
                       {"probes' hash", response.probe_hash()}});
 }
 
+// The scene of the command line, at a server.
+struct OpenedScene {
+  SceneArgument scene;
+  std::unique_ptr<Session> session;
+  v1::SceneSource source;
+};
+
+absl::StatusOr<OpenedScene> OpenScene(const CommandLine& line, Interruption& interruption) {
+  auto scene = ParseSceneArgument(line.scene);
+  if (!scene.ok()) return scene.status();
+  if (absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
+  auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
+  if (!session.ok()) return session.status();
+  auto source = ProvideScene((*session)->connection(), *scene);
+  if (!source.ok()) return (*session)->Explain(source.status());
+  return OpenedScene{*std::move(scene), *std::move(session), *std::move(source)};
+}
+
 }  // namespace
 
 CommandResult Scenes(const CommandLine& line, Interruption& interruption) {
@@ -89,39 +93,31 @@ CommandResult Scenes(const CommandLine& line, Interruption& interruption) {
 }
 
 CommandResult Explain(const CommandLine& line, Interruption& interruption) {
-  const auto scene = ParseSceneArgument(line.scene);
-  if (!scene.ok()) return scene.status();
-  if (absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
-  const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
-  if (!session.ok()) return session.status();
-  Connection& connection = (*session)->connection();
-  const auto source = ProvideScene(connection, *scene);
-  if (!source.ok()) return (*session)->Explain(source.status());
+  const auto opened = OpenScene(line, interruption);
+  if (!opened.ok()) return opened.status();
+  const auto& [scene, session, source] = *opened;
+  Connection& connection = session->connection();
   v1::ExplainJobRequest request;
-  *request.mutable_scene() = *source;
+  *request.mutable_scene() = source;
   *request.mutable_settings() = line.settings;
   v1::ExplainJobResponse response;
   const absl::Status status =
       connection.Call(connection.render(), &v1::RenderService::Stub::ExplainJob, request, response);
-  if (!status.ok()) return ExplainSceneError(connection, *scene, *source, (*session)->Explain(status));
+  if (!status.ok()) return ExplainSceneError(connection, scene, source, session->Explain(status));
   return Answer(line.json ? ToJson(response.plan()) : PlanText(response.plan()));
 }
 
 CommandResult Validate(const CommandLine& line, Interruption& interruption) {
-  const auto scene = ParseSceneArgument(line.scene);
-  if (!scene.ok()) return scene.status();
-  if (absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
-  const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
-  if (!session.ok()) return session.status();
-  Connection& connection = (*session)->connection();
-  const auto source = ProvideScene(connection, *scene);
-  if (!source.ok()) return (*session)->Explain(source.status());
-  const auto response = ValidateScene(connection, *source);
-  if (!response.ok()) return ExplainSceneError(connection, *scene, *source, (*session)->Explain(response.status()));
+  const auto opened = OpenScene(line, interruption);
+  if (!opened.ok()) return opened.status();
+  const auto& [scene, session, source] = *opened;
+  const auto response = ValidateScene(session->connection(), source);
+  if (!response.ok())
+    return ExplainSceneError(session->connection(), scene, source, session->Explain(response.status()));
   if (line.json)
     if (absl::Status printed = PrintBytes(ToJson(*response)); !printed.ok()) return printed;
-  if (!response->diagnostics().empty()) return UsageError(DiagnosticLines(*scene, *response));
-  return line.json || line.quiet ? ExitCode::kDone : Answer(TraitsText(*scene, *response));
+  if (!response->diagnostics().empty()) return UsageError(DiagnosticLines(scene, *response));
+  return line.json || line.quiet ? ExitCode::kDone : Answer(TraitsText(scene, *response));
 }
 
 }  // namespace flatlight

@@ -3,6 +3,7 @@
 #define FLATLIGHT_CLIENT_CLI_COMMANDS_SESSION_H_
 
 #include <memory>
+#include <string>
 
 #include "absl/status/statusor.h"
 #include "client/cli/connection/connection.h"
@@ -23,6 +24,8 @@ class Session {
 
   Connection& connection() { return *connection_; }
   bool is_private() const { return server_ != nullptr; }
+  // The path of a private server's program.
+  const std::string& server_program() const { return server_->program(); }
   // OK unless a private server has ended by itself.
   absl::Status CheckServer() { return server_ == nullptr ? absl::OkStatus() : server_->CheckAlive(); }
   // What ended a private server says more than that it cannot be reached; else `error` as it is.

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "client/cli/comparison/matching.h"
-#include "client/cli/comparison/student.h"
+#include "client/cli/statistics/distributions.h"
 #include "client/cli/status/exit_code.h"
 #include "client/cli/text/numbers.h"
 
@@ -160,8 +160,9 @@ absl::StatusOr<Comparison> Compare(const v1::RenderResult& a, const v1::RenderRe
   }
   if (pairs.empty()) return UsageError("the results cannot be compared: they have no points");
   // Half of the failure rate for the points, half for the two means of each quantity; Bonferroni within.
-  const double point_limit = StudentQuantile(0.5 * kFailureRate / values);
-  const double mean_limit = StudentQuantile(0.5 * kFailureRate / (2 * static_cast<double>(pairs.size())));
+  const double point_limit = StudentQuantile(0.5 * kFailureRate / values, kDegreesOfFreedom);
+  const double mean_limit =
+      StudentQuantile(0.5 * kFailureRate / (2 * static_cast<double>(pairs.size())), kDegreesOfFreedom);
   Comparison comparison;
   comparison.worlds_differ = !a.world_hash().empty() && !b.world_hash().empty() && a.world_hash() != b.world_hash();
   for (const Pair& pair : pairs)

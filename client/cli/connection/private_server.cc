@@ -104,15 +104,19 @@ absl::StatusOr<std::unique_ptr<PrivateServer>> PrivateServer::Start(std::uint32_
   if (token.empty()) return Failed("no random bytes");
   const std::string folder = MakeFolder();
   if (folder.empty()) return Failed(std::string("no temporary folder: ") + std::strerror(errno));
-  std::unique_ptr<PrivateServer> server(new PrivateServer(folder, token));
-  if (absl::Status status = server->Spawn(program, threads); !status.ok()) return status;
+  std::unique_ptr<PrivateServer> server(new PrivateServer(program, folder, token));
+  if (absl::Status status = server->Spawn(threads); !status.ok()) return status;
   return server;
 }
 
-PrivateServer::PrivateServer(std::string folder, std::string token)
-    : folder_(std::move(folder)), socket_(folder_ + "/socket"), log_(folder_ + "/log"), token_(std::move(token)) {}
+PrivateServer::PrivateServer(std::string program, std::string folder, std::string token)
+    : program_(std::move(program)),
+      folder_(std::move(folder)),
+      socket_(folder_ + "/socket"),
+      log_(folder_ + "/log"),
+      token_(std::move(token)) {}
 
-absl::Status PrivateServer::Spawn(const std::string& program, std::uint32_t threads) {
+absl::Status PrivateServer::Spawn(std::uint32_t threads) {
   std::array<int, 2> pipe{};
   if (pipe2(pipe.data(), O_CLOEXEC) != 0) return Failed(std::strerror(errno));
   lifeline_ = pipe[1];
@@ -134,17 +138,17 @@ absl::Status PrivateServer::Spawn(const std::string& program, std::uint32_t thre
   posix_spawnattr_setsigdefault(&attributes, &signals);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
 
-  std::vector<std::string> arguments = {program, "--listen", address(), "--exit-with-parent"};
+  std::vector<std::string> arguments = {program_, "--listen", address(), "--exit-with-parent"};
   if (threads > 0) arguments.insert(arguments.end(), {"--threads", std::to_string(std::min(threads, kMostThreads))});
   std::vector<std::string> environment = Environment(token_);
-  const int error = posix_spawn(&child_, program.c_str(), &files, &attributes, Pointers(arguments).data(),
+  const int error = posix_spawn(&child_, program_.c_str(), &files, &attributes, Pointers(arguments).data(),
                                 Pointers(environment).data());
   posix_spawn_file_actions_destroy(&files);
   posix_spawnattr_destroy(&attributes);
   close(pipe[0]);
   if (error == 0) return absl::OkStatus();
   child_ = -1;
-  return Failed(program + ": " + std::strerror(error));
+  return Failed(program_ + ": " + std::strerror(error));
 }
 
 absl::Status PrivateServer::WaitUntilReady(Interruption& interruption) {

@@ -30,15 +30,17 @@ class PrivateServer {
 
   std::string address() const { return "unix:" + socket_; }
   const std::string& token() const { return token_; }
+  const std::string& program() const { return program_; }  // The path of flatlightd.
 
   // OK while the server runs, else UNAVAILABLE with how it ended and the end of what it wrote.
   absl::Status CheckAlive();
 
  private:
-  PrivateServer(std::string folder, std::string token);
-  absl::Status Spawn(const std::string& program, std::uint32_t threads);
+  PrivateServer(std::string program, std::string folder, std::string token);
+  absl::Status Spawn(std::uint32_t threads);
   void Stop();
 
+  std::string program_;
   std::string folder_;
   std::string socket_;
   std::string log_;

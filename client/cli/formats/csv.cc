@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/formats/csv.h"
 
+#include "client/cli/formats/csv_syntax.h"
 #include "client/cli/formats/result_columns.h"
 #include "client/cli/text/numbers.h"
 
 namespace flatlight {
-namespace {
-
-std::string Quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
-}  // namespace
 
 std::string ResultToCsv(const v1::RenderResult& result, const std::function<bool()>& stop) {
   const std::vector<ResultColumn> columns = ResultColumnsOf(result);
@@ -28,7 +19,7 @@ std::string ResultToCsv(const v1::RenderResult& result, const std::function<bool
   csv += '\n';
 
   for (const v1::ProbeResult& probe : result.probes()) {
-    const std::string name = Quoted(probe.name());
+    const std::string name = CsvText(probe.name());
     for (int point = 0; point < static_cast<int>(probe.count()); ++point) {
       if (point % kPointsBetweenStops == 0 && stop()) return csv;
       csv += name + ',' + std::to_string(point);

@@ -8,15 +8,12 @@
 
 #include "client/cli/formats/enum_names.h"
 #include "client/cli/formats/plot_series.h"
+#include "client/cli/formats/plot_style.h"
 #include "client/cli/text/numbers.h"
-#include "client/cli/text/text_table.h"
 
 namespace flatlight {
 namespace {
 
-// Told apart also by colour-blind people: M. Okabe, K. Ito, "Color universal design", 2008.
-constexpr std::array<const char*, 7> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                 "#E69F00", "#56B4E9", "#000000"};
 constexpr std::array<const char*, 3> kChannelColours = {"#D55E00", "#009E73", "#0072B2"};
 
 constexpr const char* kBandStyle = " fillstyle transparent solid 0.25 noborder fillcolor rgb ";
@@ -28,28 +25,6 @@ constexpr int kOtherPanel = 190;
 constexpr int kGap = 16;              // Between panels.
 constexpr int kFoot = 58;             // Height of the axis at the bottom.
 constexpr std::size_t kMarkers = 48;  // Up to this many points are marked.
-
-// User text inside single quotes. Enhanced text has its own special characters. An apostrophe becomes a typographic
-// one: gnuplot's own way, to double it, fails at the beginning of a text.
-std::string Quoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : CutToWidth(Printable(text), 60)) {
-    if (std::string("{}^_@&~\\").find(c) != std::string::npos) quoted += '\\';
-    quoted += c == '\'' ? "\u2019" : std::string(1, c);
-  }
-  return quoted + "'";
-}
-
-std::string Terminal(PlotForm form, int height) {
-  const auto size = [height](int scale) {
-    return std::to_string(kWidth * scale) + "," + std::to_string(height * scale);
-  };
-  if (form == PlotForm::kSvg)
-    return "set terminal svg size " + size(1) +
-           " dynamic enhanced background 'white' font 'Helvetica,Arial,sans-serif,13'\n";
-  return "set terminal pngcairo size " + size(2) + " enhanced background 'white' font 'DejaVu Sans,11' fontscale 2 " +
-         "linewidth 2 pointscale 2\n";
-}
 
 std::string Subtitle(const v1::RenderResult& result) {
   std::string text = OptionName(result.plan().settings().method());
@@ -103,7 +78,7 @@ bool HasBand(const PlotSeries& series) {
 
 std::string Colour(const PlotSeries& series, bool coloured) {
   if (coloured) return kChannelColours[static_cast<std::size_t>(series.channel)];
-  return kColours[static_cast<std::size_t>(series.probe) % kColours.size()];
+  return kPlotColours[static_cast<std::size_t>(series.probe) % kPlotColours.size()];
 }
 
 // Bands first, so that no line is covered.
@@ -123,7 +98,7 @@ std::string PlotCommand(const Panel& panel) {
     lines += ", " + BlockName(panel, i) + " using 1:2 with " +
              (marked ? "linespoints pointtype 7 pointsize 0.45" : "lines") + " linewidth 1.6 linecolor rgb '" + colour +
              "'" + (coloured ? " dashtype " + std::to_string(series.probe % 5 + 1) : "") + " title " +
-             Quoted(series.title);
+             PlotText(series.title);
   }
   const std::string legend =
       bands.empty() ? ""
@@ -153,7 +128,7 @@ std::string PlotScript(const v1::RenderResult& result, PlotForm form) {
   const int height = kHead + kFirstPanel + static_cast<int>(panels.size() - 1) * (kGap + kOtherPanel) + kFoot;
   const auto screen = [height](int y) { return FormatValue(1 - static_cast<double>(y) / height, 6); };
 
-  std::string script = Terminal(form, height);
+  std::string script = PlotTerminal(form, kWidth, height);
   for (const Panel& panel : panels) script += DataBlocks(panel);
   script +=
       "set encoding utf8\nset multiplot\nset border 3 linecolor rgb '#404040' linewidth 0.8\n"
@@ -161,8 +136,8 @@ std::string PlotScript(const v1::RenderResult& result, PlotForm form) {
       "set xzeroaxis linetype 1 linecolor rgb '#a0a0a0' linewidth 0.6\nset autoscale xfix\n"
       "set lmargin at screen 0.115\nset rmargin at screen 0.975\nset format y '%.4g'\n"
       "set label 1 '{/:Bold*1.35 '." +
-      Quoted(result.scene().empty() ? "irradiance" : result.scene()) + ".'}' at screen 0.02, screen " + screen(24) +
-      " left\n" + "set label 2 " + Quoted(Subtitle(result)) + " at screen 0.02, screen " + screen(50) +
+      PlotText(result.scene().empty() ? "irradiance" : result.scene()) + ".'}' at screen 0.02, screen " + screen(24) +
+      " left\n" + "set label 2 " + PlotText(Subtitle(result)) + " at screen 0.02, screen " + screen(50) +
       " left textcolor rgb '#606060'\n" + "set key at screen 0.975, screen " + screen(14) +
       " right top horizontal Left reverse maxrows 3 samplen 1.8 spacing 1.2 width -2 textcolor rgb '#404040'\n";
 

@@ -6,11 +6,10 @@
 
 #include <string>
 
+#include "client/cli/formats/plot_style.h"
 #include "flatlight/v1/result.pb.h"
 
 namespace flatlight {
-
-enum class PlotForm { kSvg, kPng };
 
 // Deterministic. Probes without arc length make the axis the number of the point. Lines of more than some thousand
 // points are thinned so that peaks stay.

@@ -52,6 +52,13 @@ absl::StatusOr<v1::Job> CancelJob(Connection& connection, const std::string& nam
   return job;
 }
 
+absl::Status DeleteJob(Connection& connection, const std::string& name) {
+  v1::DeleteJobRequest request;
+  request.set_name(name);
+  v1::DeleteJobResponse response;
+  return connection.Call(connection.render(), &v1::RenderService::Stub::DeleteJob, request, response);
+}
+
 absl::StatusOr<v1::RenderResult> FetchResult(Connection& connection, const std::string& name) {
   v1::GetResultRequest request;
   request.set_name(name);

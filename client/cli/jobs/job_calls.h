@@ -18,6 +18,9 @@ absl::StatusOr<v1::Job> GetJob(Connection& connection, const std::string& name);
 // Works also after a signal.
 absl::StatusOr<v1::Job> CancelJob(Connection& connection, const std::string& name);
 
+// Of an ended job: the server need not keep it.
+absl::Status DeleteJob(Connection& connection, const std::string& name);
+
 // The result of an ended job, checked to be whole.
 absl::StatusOr<v1::RenderResult> FetchResult(Connection& connection, const std::string& name);
 

@@ -16,6 +16,7 @@ namespace {
 struct Raw {
   CommandLine line;
   SettingsOptions settings;
+  BenchTexts bench;
   std::optional<std::string> tolerance;
   std::optional<std::string> server;
 };
@@ -48,22 +49,34 @@ void AddOutputs(CLI::App& app, Raw& raw) {
       ->allow_extra_args(false);
 }
 
-void AddSettings(CLI::App& app, Raw& raw) {
-  SettingsOptions& settings = raw.settings;
-  app.add_option("--method", settings.method, "exact (direct light) or path-tracing")->type_name("NAME");
-  app.add_option("--samples", settings.samples, "paths a point (default 1024)")->type_name("N");
+void AddBounces(CLI::App& app, SettingsOptions& settings) {
   app.add_option("--max-bounces", settings.max_bounces, "reflections; 0 is direct light (default: all)")
       ->type_name("N");
-  app.add_option("--seed", settings.seed, "another seed, an independent result (default 0)")->type_name("N");
+}
+
+void AddDerivatives(CLI::App& app, SettingsOptions& settings) {
   app.add_option("--derivatives", settings.derivatives, "none, gradient or hessian (default: all the method gives)")
       ->type_name("NAME");
-  app.add_option("--target-error", settings.target_error, "stop at this relative standard error, in (0, 1]")
-      ->type_name("E");
-  app.add_option("--time-limit", settings.time_limit, "stop after so many seconds")->type_name("S");
+}
+
+void AddThreadsAndSkips(CLI::App& app, SettingsOptions& settings) {
   app.add_option("--threads", settings.threads, "at most so many (default: all the server's)")->type_name("N");
   app.add_option("--no-skip", settings.no_skip, "do work that could be left out, see explain; may be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false);
+}
+
+void AddSettings(CLI::App& app, Raw& raw) {
+  SettingsOptions& settings = raw.settings;
+  app.add_option("--method", settings.method, "exact (direct light) or path-tracing")->type_name("NAME");
+  app.add_option("--samples", settings.samples, "paths a point (default 1024)")->type_name("N");
+  AddBounces(app, settings);
+  app.add_option("--seed", settings.seed, "another seed, an independent result (default 0)")->type_name("N");
+  AddDerivatives(app, settings);
+  app.add_option("--target-error", settings.target_error, "stop at this relative standard error, in (0, 1]")
+      ->type_name("E");
+  app.add_option("--time-limit", settings.time_limit, "stop after so many seconds")->type_name("S");
+  AddThreadsAndSkips(app, settings);
 }
 
 void AddSceneCommands(CLI::App& app, Raw& raw) {
@@ -125,8 +138,56 @@ void AddCompare(CLI::App& app, Raw& raw) {
   AddQuiet(compare, raw);
 }
 
+void AddBenchCompare(CLI::App& bench, Raw& raw) {
+  CLI::App& compare =
+      AddCommand(bench, "compare", "one benchmark against another, with the noise of both", kBenchCompareHelp);
+  compare.add_option("BENCHES", raw.line.results, "A.csv and B.csv: two benchmarks")->required()->expected(2);
+  compare.add_option("--least", raw.bench.least, "the smallest relative change that counts (default 0.05)")
+      ->type_name("X");
+  AddJson(compare, raw, "the report");
+  AddQuiet(compare, raw);
+}
+
+void AddBench(CLI::App& app, Raw& raw) {
+  CLI::App& bench = AddCommand(app, "bench", "run time against error of methods, scenes and budgets", kBenchHelp);
+  BenchTexts& texts = raw.bench;
+  SettingsOptions& settings = raw.settings;
+  bench.add_option("SCENE", texts.scenes, "scene files or gallery:NAME");
+  bench.add_flag("--gallery", texts.gallery, "all scenes of the gallery");
+  bench.add_option("--methods", texts.methods, "exact,path-tracing,... (default: all the server has)")
+      ->type_name("NAMES");
+  bench.add_option("--budgets", texts.budgets, "samples: 16,64,256,... (default: from 16 up, as time allows)")
+      ->type_name("LIST");
+  bench.add_option("--seeds", texts.seeds, "independent runs of a point (default 16)")->type_name("N");
+  bench.add_option("--repeats", texts.repeats, "runs of each seed, for its time (default 1)")->type_name("N");
+  bench
+      .add_option("--time-limit", texts.time_limit,
+                  "seconds for all runs together (default 60; none if --budgets is given)")
+      ->type_name("S");
+  bench.add_option("--truth", texts.truths, "a result to measure errors against; may be repeated")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  bench.add_option("--truth-samples", texts.truth_samples, "path tracing with so many samples is the truth")
+      ->type_name("N");
+  AddOutputs(bench, raw);
+  bench.add_flag("--force", texts.force, "go on with a CSV file of another machine, build or other settings");
+  AddBounces(bench, settings);
+  bench.add_option("--seed", settings.seed, "other seeds (default 0)")->type_name("N");
+  AddDerivatives(bench, settings);
+  AddThreadsAndSkips(bench, settings);
+  AddJson(bench, raw, "the report");
+  AddQuiet(bench, raw);
+  AddServer(bench, raw);
+  AddBenchCompare(bench, raw);
+}
+
 absl::StatusOr<CommandLine> Finish(const CLI::App& app, Raw& raw) {
-  raw.line.command = app.get_subcommands().front()->get_name();
+  const CLI::App& command = *app.get_subcommands().front();
+  raw.line.command = command.get_name();
+  for (const CLI::App* part : command.get_subcommands()) raw.line.command += ' ' + part->get_name();
+  absl::StatusOr<BenchOptions> bench = ParseBenchOptions(raw.bench);
+  if (!bench.ok()) return bench.status();
+  raw.line.bench = *std::move(bench);
   absl::StatusOr<v1::Settings> settings = ParseSettings(raw.settings);
   if (!settings.ok()) return settings.status();
   raw.line.settings = *std::move(settings);
@@ -147,6 +208,7 @@ absl::StatusOr<CommandLine> Finish(const CLI::App& app, Raw& raw) {
 
 absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv, const std::string& version) {
   Raw raw;
+  raw.line.version = version;
   CLI::App app("Flatlight: global illumination in the plane, with the error of every number.", "flatlight");
   app.get_formatter()->column_width(28);
   app.require_subcommand(1);
@@ -156,6 +218,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv, 
   AddSceneCommands(app, raw);
   AddJobCommands(app, raw);
   AddCompare(app, raw);
+  AddBench(app, raw);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

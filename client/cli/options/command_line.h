@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/cli/options/bench_options.h"
 #include "flatlight/v1/settings.pb.h"
 
 namespace flatlight {
 
 struct CommandLine {
-  std::string command;  // "render", "submit", ... Empty if all that is wanted is `text`.
+  std::string version;  // Of this program: release and commit.
+  std::string command;  // "render", "bench compare", ... Empty if all that is wanted is `text`.
   std::string text;     // Help or version, to print.
   std::string server;   // Of --server; empty if not given.
   bool json = false;
@@ -21,8 +23,9 @@ struct CommandLine {
   std::string job;    // JOB as written.
   v1::Settings settings;
   std::vector<std::string> outputs;
-  std::vector<std::string> results;  // The two files of `compare`.
+  std::vector<std::string> results;  // The two files of `compare` and of `bench compare`.
   std::optional<double> tolerance;   // Of `compare`.
+  BenchOptions bench;                // Of `bench` and `bench compare`.
 };
 
 // Errors end with ExitCode::kUsage.

@@ -11,15 +11,16 @@ inline constexpr char kMainHelp[] = R"(Examples:
   flatlight explain scene.json --method path-tracing        what would be done, and why
   flatlight submit scene.json --server farm:7000            leave the work to a server
   flatlight compare mine.json reference.json                are they equal within their errors?
+  flatlight bench gallery:penumbra -o bench.svg             run time against error of every method
 
 Environment:
   FLATLIGHT_SERVER  the server, if there is no --server: HOST:PORT or unix:PATH
   FLATLIGHT_TOKEN   the token that the server asks for (the connection is not encrypted: use a tunnel between machines)
-Without a server, render, scenes, explain and validate start one of their own for as long as they run.
+Without a server, render, scenes, explain, validate and bench start one of their own for as long as they run.
 
 Exit status:
   0 done   1 the job failed   2 bad usage or bad scene   3 server not reached   4 denied or over quota
-  5 an output could not be written   10 compare found a difference   130 interrupted)";
+  5 an output could not be written   10 compare found a difference, or bench compare something worse   130 interrupted)";
 
 inline constexpr char kRenderHelp[] = R"(The ending of OUT picks its form:
   .json        the whole result (RenderResult of the API); - writes it to standard output
@@ -75,6 +76,46 @@ Verdict (exit status 0: equal, 10: they differ, 2: not comparable):
 Examples:
   flatlight compare result.json reference.json
   flatlight compare a.json b.json --tolerance 0.01 --json)";
+
+inline constexpr char kBenchHelp[] =
+    R"(Renders scenes with methods and budgets (samples), one job at a time, and measures every result against the truth: exact
+light where there is no reflection. A scene that reflects is benched with --max-bounces 0, unless there is a truth for
+all its bounces: --truth, a stored result of the same scene, or --truth-samples, whose own error is taken out of the
+errors and shown. Every method is warmed up once; then rounds go through all methods and budgets, each with another
+seed, so that a machine that gets slower does so for all. Times are the server's own; processor time is what counts.
+
+The ending of OUT picks its form:
+  .csv         a row a run, written as it ends. The same command with the same file does only what is missing; Ctrl-C
+               loses nothing. A file of another machine, build or other settings is refused; with --force its rows stay,
+               and count for nothing.
+  .svg .png    error against time, both logarithmic, with the fitted line of each method (needs gnuplot)
+  .json        the report; - writes it to standard output
+
+Examples:
+  flatlight bench gallery:penumbra gallery:ring -o bench.csv -o bench.svg
+  flatlight bench --gallery --methods path-tracing --budgets 64,256,1024 --time-limit 120
+  flatlight bench gallery:cornell --truth-samples 1000000
+  flatlight bench compare before.csv after.csv)";
+
+inline constexpr char kBenchCompareHelp[] =
+    R"(A and B are CSV files of `flatlight bench`. Points of the same scene, method, settings, truth and budget are compared: the
+ratio B over A of processor time, of RMS error and of efficiency (1 / (error^2 * time)), with an interval by Student's t
+on logarithms: of the errors of the seeds (seed by seed, if both have the same), and of the least time of every few runs
+that follow each other (2 of 8, 4 of 32), since other work on a machine makes runs slower, never faster.
+
+Verdict of a point, and of all together (exit status 0, or 10: something is worse):
+  better, worse        the interval leaves 1 out, and the change is one that counts (--least). Efficiency goes first:
+                       less time for more error may be worth it. The intervals are so wide that of two benchmarks of the
+                       same less than 1 in 100 shows any point better or worse, whatever the number of points.
+  no difference seen   the interval is no wider than 4 * --least to either side
+  too noisy to tell    it is; so many runs (--seeds, --repeats) would do
+
+The runs know the noise within each benchmark, not what changed on the machine from one to the other. For small changes
+take turns: bench A with --seeds 4, bench B with --seeds 4, then both again with --seeds 8, each with its own file.
+Times of different machines are not compared, errors are.
+
+Example:
+  flatlight bench compare before.csv after.csv --least 0.1)";
 
 }  // namespace flatlight
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "client/cli/progress/progress_line.h"
+#include "client/cli/text/text_table.h"
 
 namespace flatlight {
 namespace {
@@ -25,9 +26,17 @@ std::optional<std::size_t> TerminalWidth(std::FILE* out) {
 }
 
 void ProgressDisplay::Show(const v1::Job& job, Time now, std::optional<std::size_t> width) {
-  if (!width) return ShowPlain(job, now);
+  if (!width) return ShowPlain(ProgressLine(job, 0), now, Ended(job));
   // The last column stays free: some terminals wrap as soon as it is written.
-  const std::string line = ProgressLine(job, *width > 1 ? *width - 1 : 1);
+  Draw(ProgressLine(job, *width > 1 ? *width - 1 : 1));
+}
+
+void ProgressDisplay::ShowLine(const std::string& line, Time now, std::optional<std::size_t> width) {
+  if (!width) return ShowPlain(line, now, false);
+  Draw(CutToWidth(line, *width > 1 ? *width - 1 : 1));
+}
+
+void ProgressDisplay::Draw(const std::string& line) {
   if (line == drawn_) return;
   std::fprintf(out_, "%s%s", kEraseLine, line.c_str());
   std::fflush(out_);
@@ -41,9 +50,8 @@ void ProgressDisplay::Clear() {
   drawn_.clear();
 }
 
-void ProgressDisplay::ShowPlain(const v1::Job& job, Time now) {
-  if (!Ended(job) && printed_at_ && now - *printed_at_ < kPlainInterval) return;
-  const std::string line = ProgressLine(job, 0);
+void ProgressDisplay::ShowPlain(const std::string& line, Time now, bool last) {
+  if (!last && printed_at_ && now - *printed_at_ < kPlainInterval) return;
   if (line == printed_) return;
   std::fprintf(out_, "%s\n", line.c_str());
   std::fflush(out_);

@@ -29,11 +29,16 @@ class ProgressDisplay {
   // `width` as TerminalWidth says, asked anew each time: windows change.
   void Show(const v1::Job& job, Time now, std::optional<std::size_t> width);
 
+  // The same for a line of other words.
+  void ShowLine(const std::string& line, Time now, std::optional<std::size_t> width);
+
   // Takes the line off the terminal, for text to come.
   void Clear();
 
  private:
-  void ShowPlain(const v1::Job& job, Time now);
+  void Draw(const std::string& line);
+  // `last`: shown also if the one before was a moment ago.
+  void ShowPlain(const std::string& line, Time now, bool last);
 
   std::FILE* out_;
   std::string drawn_;    // On the terminal.

@@ -39,6 +39,8 @@ std::string FormatCount(double value) {
 
 std::string FormatValue(double value, int digits) { return Print("%.*g", digits, value); }
 
+std::string FormatFixed(double value, int decimals) { return Print("%.*f", decimals, value); }
+
 std::string FormatPercent(double fraction) {
   const double percent = 100 * fraction;
   if (percent == 0) return "0 %";

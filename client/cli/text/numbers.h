@@ -13,6 +13,9 @@ std::string FormatCount(double value);
 // `digits` significant digits, scientific where that is shorter: 0.1533, 3.2e-14.
 std::string FormatValue(double value, int digits = 4);
 
+// So many digits after the point: -0.50.
+std::string FormatFixed(double value, int decimals);
+
 // Two significant digits: 1.3 %, 0.042 %, 120 %.
 std::string FormatPercent(double fraction);
 

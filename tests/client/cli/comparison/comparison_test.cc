@@ -7,7 +7,6 @@
 #include <cmath>
 #include <random>
 
-#include "client/cli/comparison/student.h"
 #include "tests/client/cli/formats/sample_result.h"
 
 namespace flatlight {
@@ -44,14 +43,6 @@ bool Equal(const v1::RenderResult& a, const v1::RenderResult& b, std::optional<d
   const auto comparison = Compare(a, b, tolerance);
   EXPECT_TRUE(comparison.ok()) << comparison.status();
   return comparison.ok() && comparison->Equal();
-}
-
-TEST(Student, TailMatchesTables) {
-  EXPECT_NEAR(StudentTail(0), 1, 1e-15);
-  EXPECT_NEAR(StudentTail(1.761310), 0.1, 1e-6);  // Abramowitz & Stegun, table 26.10.
-  EXPECT_NEAR(StudentTail(2.144787), 0.05, 1e-6);
-  EXPECT_NEAR(StudentTail(4.140454), 0.001, 1e-8);
-  for (const double p : {0.9, 0.3, 0.05, 1e-4, 1e-9, 1e-14}) EXPECT_NEAR(StudentTail(StudentQuantile(p)) / p, 1, 1e-9);
 }
 
 // 300 right results at a failure rate of 1e-4 each: the chance of any failure is 3 %, and the seeds are fixed.

@@ -22,6 +22,56 @@ std::string ErrorOf(const std::vector<const char*>& arguments) {
   return line.ok() ? "" : std::string(line.status().message().data(), line.status().message().size());
 }
 
+TEST(CommandLine, AllOfBench) {
+  const auto line = Parse({"bench",
+                           "a.json",
+                           "gallery:ring",
+                           "--gallery",
+                           "--methods",
+                           "path-tracing,exact",
+                           "--budgets",
+                           "256,16",
+                           "--seeds",
+                           "4",
+                           "--repeats",
+                           "2",
+                           "--time-limit",
+                           "7.5",
+                           "--truth",
+                           "t.json",
+                           "-o",
+                           "b.csv",
+                           "-o",
+                           "b.svg",
+                           "--force",
+                           "--max-bounces",
+                           "0",
+                           "--seed",
+                           "9",
+                           "--threads",
+                           "1"});
+  ASSERT_TRUE(line.ok()) << line.status();
+  EXPECT_EQ(line->command, "bench");
+  EXPECT_THAT(line->bench.scenes, ElementsAre("a.json", "gallery:ring"));
+  EXPECT_THAT(line->bench.methods, ElementsAre("path-tracing", "exact"));
+  EXPECT_THAT(line->bench.budgets, ElementsAre(16, 256));
+  EXPECT_EQ(line->bench.seeds, 4U);
+  EXPECT_EQ(line->bench.repeats, 2U);
+  EXPECT_EQ(line->bench.time_limit, 7.5);
+  EXPECT_FALSE(line->settings.has_time_limit());  // Of all runs together, not of each.
+  EXPECT_THAT(line->bench.truths, ElementsAre("t.json"));
+  EXPECT_THAT(line->outputs, ElementsAre("b.csv", "b.svg"));
+  EXPECT_TRUE(line->bench.gallery && line->bench.force);
+  EXPECT_EQ(line->settings.seed(), 9U);
+  const auto compare = Parse({"bench", "compare", "a.csv", "b.csv", "--least", "0.1"});
+  ASSERT_TRUE(compare.ok()) << compare.status();
+  EXPECT_EQ(compare->command, "bench compare");
+  EXPECT_THAT(compare->results, ElementsAre("a.csv", "b.csv"));
+  EXPECT_EQ(compare->bench.least, 0.1);
+  EXPECT_THAT(ErrorOf({"bench", "compare", "a.csv"}), HasSubstr("bench"));
+  EXPECT_THAT(ErrorOf({"bench", "s", "--truth", "t.json", "--truth-samples", "5"}), HasSubstr("--truth-samples: "));
+}
+
 TEST(CommandLine, AllOfRender) {
   const auto line = Parse({"render",
                            "-",
