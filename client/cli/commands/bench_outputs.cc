@@ -54,7 +54,7 @@ absl::StatusOr<BenchOutputs> PlanBenchOutputs(const std::vector<std::string>& pa
     if (!seen.insert(path).second) return UsageError("--output: " + path + " is given twice");
     if (absl::Status placed = Place(path, outputs); !placed.ok()) return placed;
   }
-  if (json && !outputs.ToStandardOutput()) outputs.reports.push_back("-");
+  if (json && !outputs.ToStandardOutput()) outputs.reports.emplace_back("-");
   return outputs;
 }
 
