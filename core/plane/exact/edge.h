@@ -88,7 +88,8 @@ struct EdgeErrors {
 };
 inline EdgeErrors BoundErrors(const Edge& edge, double curvature, double coordinate_error) {
   if (edge.kind == Edge::Kind::kHorizon) return {};
-  const double c = edge.c, q = edge.q, k = std::abs(curvature), r = std::abs(edge.signed_radius);
+  // An edge may lie below the horizon by the accuracy of the coordinates.
+  const double c = std::abs(edge.c), q = edge.q, k = std::abs(curvature), r = std::abs(edge.signed_radius);
   constexpr double u = kUnitRoundoff;
   // The direction turns by the displacement over the distance; a touching point slides with it.
   const double turn = 2 * coordinate_error * q + 4 * u;

@@ -16,8 +16,10 @@ double SineDifference(const Edge& a, const Edge& b, const Receiver& receiver) {
   if (!(cosine > 0) || a.kind == Edge::Kind::kHorizon || b.kind == Edge::Kind::kHorizon) return b.s - a.s;
   double cross;
   if (a.kind == Edge::Kind::kVertex && b.kind == Edge::Kind::kVertex) {
+    // About the nearer one, beside whose distance nothing is large.
     const Vector2 e = b.point - a.point;
-    cross = Dot(receiver.tangent, e) * a.normal - Dot(receiver.normal, e) * a.tangent;
+    const Edge& nearer = a.q > b.q ? a : b;
+    cross = Dot(receiver.tangent, e) * nearer.normal - Dot(receiver.normal, e) * nearer.tangent;
   } else {
     cross = b.tangent * a.normal - b.normal * a.tangent;
   }

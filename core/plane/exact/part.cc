@@ -185,7 +185,9 @@ class PartBuilder {
   // Where the way from an edge above the horizon to one below crosses it. Less than half a turn, so the straight way
   // tells.
   Edge Horizon(const Edge& above, const Edge& below) const {
-    const double share = above.normal / (above.normal - below.normal);
+    // Either may lie on the other side by the accuracy of the coordinates.
+    const double height = std::max(0.0, above.normal), depth = std::max(0.0, -below.normal);
+    const double share = height > 0 ? height / (height + depth) : 0;
     const double crossing = above.tangent + share * (below.tangent - above.tangent);
     // Through the receiver itself: as it moves on, the crossing falls behind.
     return HorizonEdge(crossing > 4 * scene_.coordinate_error() ? 1 : -1);

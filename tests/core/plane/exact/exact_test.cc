@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/plane/exact/edge.h"
 #include "core/scene/scene.h"
 #include "tests/core/plane/exact/oracle.h"
 #include "tests/core/plane/exact/test_scenes.h"
@@ -313,6 +314,42 @@ TEST(ExactTest, AHiddenEndBehindACrossingIsNotItsBreakInAnyOrder) {
     for (const int i : order) AddCurve(scene, curves[i], i == 0 ? 1 : 0, true);
     ExpectOneSided(WithFreePoint(scene, {0, 0}), "hidden end");
   } while (std::next_permutation(std::begin(order), std::end(order)));
+}
+
+// The lamp is seen from far away on one side up to the edge of a plate 200 times as near.
+TEST(ExactTest, TheSinesOfAFarAndANearEndKeepTheirDigits) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, SegmentDescription{{2, 2}, {-2, 2}}, 1);
+  AddCurve(scene, SegmentDescription{{0.8, -0.05}, {0.804028483363, -0.04775931626461274}}, 1.006013217669341, true);
+  AddCurve(scene, SegmentDescription{{0.800733975572249, -0.06}, {0.7981164994555591, -0.060624968}});
+  AddProbe(scene, 2, 1, Side::kBack);
+  Agreement agreement;
+  Compare(scene, agreement, "far and near");
+  EXPECT_EQ(agreement.compared, 1);
+}
+
+// A lamp in line with the floor, to rounding: both its ends lie above the horizon by a few roundoffs.
+TEST(ExactTest, ALampInLineWithTheFloorDoesNotFillTheHorizon) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, SegmentDescription{{63948.13813619294, 13028.991924723046}, {65233.04653876298, 14008.692605405686}});
+  AddCurve(scene, ArcDescription{{66615.9250094013, 14859.902445831318}, 161.57979535589038, -0.34856743087576847, 2});
+  AddCurve(scene,
+           SegmentDescription{{62663.232672724924, 12049.287389315201}, {62663.19054559566, 12049.342640376512}});
+  AddCurve(scene, SegmentDescription{{65875.50074004801, 14498.542945747004}, {67802.86334390308, 15968.09396677096}},
+           1);
+  AddProbe(scene, 0, 1, Side::kBack);
+  EXPECT_LT(Solve(*Build(scene), 0)[0].irradiance, 1e-14);
+}
+
+TEST(ExactTest, NoBoundIsNegativeWhereAnEdgeLiesBelowTheHorizonToRounding) {
+  Receiver receiver;
+  receiver.normal = {0, 1}, receiver.tangent = {1, 0};
+  for (const double curvature : {0.0, -4.0}) {
+    const EdgeErrors errors = BoundErrors(VertexEdge(receiver, {1e-4, -1e-8}), curvature, 1e-16);
+    EXPECT_GT(errors.s, 0) << curvature;
+    EXPECT_GT(errors.s_first, 0) << curvature;
+    EXPECT_GT(errors.s_second, 0) << curvature;
+  }
 }
 
 // Curves may cross, be receivers, emitters and occluders at once.
