@@ -14,7 +14,7 @@ bool DirectLightOnly(const Scene& scene, const Settings& settings);
 // Whether it is certain that no curve stands between any two points of curves and probes that see each other's sides:
 // each straight piece has all other pieces and all points in one of its closed half planes (a convex room, facing
 // walls). A segment between two points of a closed half plane crosses its edge only if both lie on it. Gives up, false,
-// where there are arcs or very many pieces.
+// where there are arcs, or many free points near many pieces.
 bool NothingBlocks(const Scene& scene);
 
 // Whether every curve reflects all light of some channel and curves form a closed loop: in it light would never fade,

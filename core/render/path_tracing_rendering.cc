@@ -9,6 +9,7 @@
 #include "core/math/tolerances.h"
 #include "core/plane/path_tracing/path_tracer.h"
 #include "core/plane/ray_caster.h"
+#include "core/render/light_paths.h"
 #include "core/render/probe_points.h"
 #include "core/render/skips.h"
 
@@ -32,7 +33,11 @@ class PathSampler final : public PointSampler {
  public:
   PathSampler(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
               const PathTracingOptions& options, std::uint32_t seed)
-      : scene_(std::move(scene)), caster_(std::move(caster)), tracer_(caster_, options), seed_(seed) {
+      : scene_(std::move(scene)),
+        caster_(std::move(caster)),
+        tracer_(caster_, options),
+        sights_(scene_->traits().probe_points),
+        seed_(seed) {
     for (const Receiver* point : PointsOfProbes(*scene_)) {
       points_.push_back(MovedOnward(*point, *caster_));
     }
@@ -40,27 +45,35 @@ class PathSampler final : public PointSampler {
 
   std::size_t channels() const override { return static_cast<std::size_t>(tracer_.channels()); }
 
-  void Steps(std::size_t point, std::span<double> steps) const override {
-    const Spectrum step = tracer_.DirectStep(points_[point]);
-    for (std::size_t c = 0; c < steps.size(); ++c) steps[c] = step.value[c];
+  void Doubts(std::size_t point, std::span<Doubt> doubts) const override {
+    const Sight sight = SightFrom(point);
+    const Spectrum step = tracer_.DirectStep(points_[point], sight);
+    const Spectrum rounding = tracer_.DirectRounding(points_[point], sight);
+    for (std::size_t c = 0; c < doubts.size(); ++c) doubts[c] = {step.value[c], rounding.value[c]};
   }
 
   void AddBlock(std::size_t point, std::uint32_t block, const Cancellation& cancellation, std::span<double> sums,
                 double& rays) const override {
+    const PathTracer::Start start(tracer_, points_[point], SightFrom(point));
     std::array<double, kMaxChannels> value{};
     for (std::size_t replicate = 0; replicate < kReplicates; ++replicate) {
       value.fill(0);
       const SampleStream stream(seed_, point, replicate);
-      tracer_.AddPath(points_[point], stream, block, cancellation, std::span(value).first(channels()), rays);
+      tracer_.AddPath(start, stream, block, cancellation, std::span(value).first(channels()), rays);
       for (std::size_t c = 0; c < channels(); ++c) sums[c * kReplicates + replicate] += value[c];
     }
   }
 
  private:
+  Sight SightFrom(std::size_t point) const {
+    return sights_.At(point, [&] { return tracer_.SightFrom(points_[point]); });
+  }
+
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const RayCaster> caster_;
   std::vector<Receiver> points_;
   PathTracer tracer_;
+  SightMemory sights_;  // By point.
   std::uint32_t seed_;
 };
 
@@ -68,7 +81,7 @@ class PathSampler final : public PointSampler {
 class DarkSampler final : public PointSampler {
  public:
   std::size_t channels() const override { return 1; }
-  void Steps(std::size_t, std::span<double> steps) const override { steps[0] = 0; }
+  void Doubts(std::size_t, std::span<Doubt> doubts) const override { doubts[0] = {}; }
   void AddBlock(std::size_t, std::uint32_t, const Cancellation&, std::span<double>, double&) const override {}
 };
 
@@ -80,7 +93,7 @@ std::unique_ptr<const PointSampler> MakeSampler(std::shared_ptr<const Scene> sce
   if (plan.Takes(skip::kBounces)) options.max_bounces = 0;
   options.one_channel = plan.Takes(skip::kColour);
   options.leave_out_shadow_rays = plan.Takes(skip::kVisibility);
-  options.nothing_blocks = plan.Takes(skip::kVisibility) || plan.Disables(skip::kVisibility);
+  options.nothing_blocks = NothingBlocks(*scene);
   options.end_black_paths = plan.Takes(skip::kBlackPaths);
   options.drop_unseen_emitters = plan.Takes(skip::kUnseenEmitters);
   return std::make_unique<PathSampler>(std::move(scene), std::move(caster), options, plan.settings.seed.value_or(0));

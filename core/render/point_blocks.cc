@@ -23,7 +23,7 @@ PointBlocks::PointBlocks(const PointSampler& sampler, std::size_t points)
     : sampler_(sampler),
       channels_(sampler.channels()),
       trees_(points, BlockTree(sampler.channels() * kReplicates)),
-      steps_(points * sampler.channels()) {}
+      doubts_(points * sampler.channels()) {}
 
 std::vector<MeanEstimate> PointBlocks::EstimatesOf(std::size_t point, std::size_t first_replicate,
                                                    std::size_t count) const {
@@ -34,7 +34,9 @@ std::vector<MeanEstimate> PointBlocks::EstimatesOf(std::size_t point, std::size_
   std::vector<MeanEstimate> estimates;
   for (std::size_t c = 0; c < channels_; ++c) {
     const std::span<const double> values(means.data() + c * kReplicates + first_replicate, count);
-    estimates.push_back(EstimateMean(values, steps_[point * channels_ + c] / samples));
+    const PointSampler::Doubt& doubt = doubts_[point * channels_ + c];
+    estimates.push_back(EstimateMean(values, doubt.step / samples));
+    estimates.back().rounding = doubt.rounding;
   }
   return estimates;
 }
@@ -138,7 +140,7 @@ bool PointBlocks::Merge(const std::vector<Shard>& shards) {
       // Blocks after a gap that an incomplete shard left are done again later.
       if (blocks(piece.point) != piece.first) continue;
       if (piece.first == 0) {
-        sampler_.Steps(piece.point, std::span(steps_).subspan(piece.point * channels_, channels_));
+        sampler_.Doubts(piece.point, std::span(doubts_).subspan(piece.point * channels_, channels_));
       }
       trees_[piece.point].Append(piece.level, std::span(shard.nodes).subspan(i * width, width));
       total_blocks_ += std::ldexp(1.0, static_cast<int>(piece.level));

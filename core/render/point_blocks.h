@@ -72,8 +72,8 @@ class PointBlocks {
   std::size_t channels_;
   std::vector<BlockTree> trees_;
   std::vector<std::uint64_t> goals_;
-  std::size_t first_open_ = 0;  // No point before it is short of its goal.
-  std::vector<double> steps_;   // Point, then channel.
+  std::size_t first_open_ = 0;               // No point before it is short of its goal.
+  std::vector<PointSampler::Doubt> doubts_;  // Point, then channel.
   double total_blocks_ = 0;
   double rays_ = 0;
   // How to cut work: measured, without influence on sums.

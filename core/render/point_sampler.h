@@ -19,8 +19,13 @@ class PointSampler {
 
   virtual ~PointSampler() = default;
   virtual std::size_t channels() const = 0;
-  // The largest change of one sample that stratification may hide (see EstimateMean), of each channel.
-  virtual void Steps(std::size_t point, std::span<double> steps) const = 0;
+  // What all samples of a point may have in common without showing it.
+  struct Doubt {
+    double step = 0;      // The largest change of one sample that stratification may hide (see EstimateMean).
+    double rounding = 0;  // Of a sample's arithmetic.
+  };
+  // Of each channel.
+  virtual void Doubts(std::size_t point, std::span<Doubt> doubts) const = 0;
   // Adds sample `block` of every replicate to `sums` (channel after channel, kReplicates each), and rays cast to
   // `rays`. A pure function of point and block, safe to call from several threads; of no use once cancelled.
   virtual void AddBlock(std::size_t point, std::uint32_t block, const Cancellation& cancellation,

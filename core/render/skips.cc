@@ -3,30 +3,49 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "core/plane/bvh.h"
+#include "core/plane/path_tracing/emitter_reach.h"
 #include "core/plane/path_tracing/emitter_sampler.h"
 #include "core/render/light_paths.h"
 
 namespace flatlight {
 namespace {
 
-// Of a piece and a point. Above, planning would take longer than what the skip saves.
-constexpr std::size_t kMostPairsFaced = 100'000;
-
 bool IsGiven(const Settings& settings, const char* name) {
   return std::find(settings.no_skip.begin(), settings.no_skip.end(), name) != settings.no_skip.end();
 }
 
-// How many emitting pieces light no point directly; 0 where that would take long to find out.
-std::size_t UnseenEmitters(const Scene& scene) {
-  if (scene.traits().emitting_curves > EmitterSampler::kMostWeighed) return 0;
-  EmitterSampler sampler(std::shared_ptr<const Scene>(std::shared_ptr<const Scene>(), &scene));
-  if (sampler.empty() || !sampler.weighs()) return 0;
-  if (scene.traits().probe_points > kMostPairsFaced / EmitterSampler::kMostWeighed) return 0;
-  return sampler.DropUnseen();
+// What shapes tell of who lights what.
+struct LightWays {
+  LightWays(const Scene& scene, bool direct) {
+    std::optional<Bvh> bvh;
+    if (scene.traits().emitting_curves > 0 && ReachNeedsTree(scene)) bvh.emplace(scene);
+    const EmitterReach reach = ReachOfEmitters(scene, bvh ? &*bvh : nullptr);
+    unlit_reflectors = scene.traits().max_reflectance > 0 && !reach.LightsReflectors();
+    weighed = reach.pieces.size() <= EmitterSampler::kMostWeighed;
+    if (!weighed) return;
+    known = reach.ways;
+    clear = reach.clear_ways;
+    for (const EmitterReach::Piece& piece : reach.pieces) {
+      unseen += piece.lights_points || (!direct && piece.lights_reflectors) ? 0 : 1;
+    }
+  }
+
+  bool unlit_reflectors = false;  // Something reflects, but no light comes to it.
+  // Whether emitters are few enough to be weighed one by one. Only then is more known of each; and one that is left out
+  // leaves the chances of the others as they are.
+  bool weighed = false;
+  std::size_t known = 0;   // Pairs of an emitting piece and a place it may light.
+  std::size_t clear = 0;   // Those between which nothing stands.
+  std::size_t unseen = 0;  // Emitting pieces whose light comes to nothing.
+};
+
+std::string Counted(std::size_t count, const std::string& one, const std::string& many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
 class Decisions {
@@ -53,44 +72,49 @@ class Decisions {
 
 std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings) {
   const SceneTraits& traits = scene.traits();
-  const bool exact = settings.method == Method::kExact;
-  const bool direct = DirectLightOnly(scene, settings);
   Decisions decisions(settings);
-  decisions.Add(
-      skip::kEmission, traits.emitting_curves == 0, "nothing emits: all is dark",
-      std::to_string(traits.emitting_curves) + (traits.emitting_curves == 1 ? " curve emits" : " curves emit"));
+  decisions.Add(skip::kEmission, traits.emitting_curves == 0, "nothing emits: all is dark",
+                Counted(traits.emitting_curves, "curve emits", "curves emit"));
   decisions.Add(skip::kColour, traits.grey, "all spectra are grey: one channel is computed",
                 "some spectra are coloured");
-  decisions.Add(skip::kVisibility, NothingBlocks(scene),
-                "nothing can stand between two points: blockers are not looked for", "curves may block each other");
-  if (exact) {
+  const bool nothing_blocks = NothingBlocks(scene);
+  const std::string nothing_reason = "nothing can stand between two points: blockers are not looked for";
+  if (settings.method == Method::kExact) {
+    decisions.Add(skip::kVisibility, nothing_blocks, nothing_reason, "curves may block each other");
     const bool none = settings.derivatives == Derivatives::kNone;
     decisions.Add(skip::kDerivatives, settings.derivatives != Derivatives::kHessian,
                   none ? "no derivatives were asked for" : "the second derivative was not asked for",
                   "both derivatives were asked for");
-  } else {
-    decisions.Add(skip::kDerivatives, false, "", "path tracing gives none");
-  }
-  if (exact) {
     const std::string reason = "exact light is direct: it has no paths and no samples";
     for (const char* name : {skip::kBounces, skip::kBlackPaths, skip::kUnseenEmitters, skip::kConvergedPoints}) {
       decisions.Add(name, false, "", reason);
     }
     return decisions.Take();
   }
-  decisions.Add(skip::kBounces, traits.max_reflectance == 0, "nothing reflects: direct light is all",
-                settings.max_bounces == 0u ? "max bounces 0 asks for none anyway" : "some curves reflect");
+  const bool direct = DirectLightOnly(scene, settings);
+  const LightWays ways(scene, direct);
+  const std::string clear_reason = "nothing stands between an emitter and what it lights in " +
+                                   std::to_string(ways.clear) + " of " + Counted(ways.known, "pair", "pairs") +
+                                   ": no shadow tests there";
+  decisions.Add(skip::kVisibility, nothing_blocks || ways.clear > 0, nothing_blocks ? nothing_reason : clear_reason,
+                "curves may block each other");
+  decisions.Add(skip::kDerivatives, false, "", "path tracing gives none");
+  const bool none_asked = settings.max_bounces == 0u;
+  decisions.Add(skip::kBounces, !none_asked && (traits.max_reflectance == 0 || ways.unlit_reflectors),
+                ways.unlit_reflectors ? "no light comes to what reflects: direct light is all"
+                                      : "nothing reflects: direct light is all",
+                none_asked ? "max bounces 0 asks for none anyway" : "some curves reflect");
   const std::vector<Curve>& curves = scene.curves();
-  const auto black =
-      std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return c.reflectance.IsBlack(); });
-  decisions.Add(skip::kBlackPaths, black > 0,
-                "paths end at " + std::to_string(black) + (black == 1 ? " black curve" : " black curves"),
-                "no curve is black");
-  const std::size_t unseen = direct ? UnseenEmitters(scene) : 0;
-  decisions.Add(skip::kUnseenEmitters, unseen > 0,
-                std::to_string(unseen) + " emitting " + (unseen == 1 ? "piece faces" : "pieces face") + " no point",
-                direct ? "all emitters face some point, as far as a quick look tells"
-                       : "light of any emitter may arrive by reflection");
+  const auto black = static_cast<std::size_t>(
+      std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return c.reflectance.IsBlack(); }));
+  decisions.Add(skip::kBlackPaths, !direct && black > 0,
+                "paths end at " + Counted(black, "black curve", "black curves"),
+                direct ? "no path goes on from where it arrives" : "no curve is black");
+  decisions.Add(skip::kUnseenEmitters, ways.unseen > 0,
+                Counted(ways.unseen, "emitting piece lights ", "emitting pieces light ") +
+                    (direct ? "no point" : "no point and nothing that reflects"),
+                ways.weighed ? "all emitters light something, as far as shapes tell"
+                             : "the emitters are too many to look at each");
   decisions.Add(skip::kConvergedPoints, settings.target_error.has_value(),
                 "points that meet the target error get no more samples", "no target error was given");
   return decisions.Take();

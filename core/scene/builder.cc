@@ -232,7 +232,20 @@ void SceneBuilder::AddProbes() {
   for (Probe& probe : scene_->probes_)
     for (Receiver& receiver : probe.receivers)
       if (receiver.element == ElementId::kNone) loose.push_back(&receiver);
+  for (Probe& probe : scene_->probes_) {
+    probe.on_curve = probe.curve != CurveId::kNone;
+    for (const Receiver& receiver : probe.receivers) probe.on_curve &= receiver.element != ElementId::kNone;
+  }
   AttachReceivers(scene_->elements_, 2 * scene_->touch_distance_, std::move(loose));
+  for (Probe& probe : scene_->probes_) {
+    if (probe.receivers.empty()) continue;
+    probe.low = probe.high = probe.receivers.front().position;
+    for (const Receiver& receiver : probe.receivers) {
+      const Point2 p = receiver.position;
+      probe.low = {std::min(probe.low.x, p.x), std::min(probe.low.y, p.y)};
+      probe.high = {std::max(probe.high.x, p.x), std::max(probe.high.y, p.y)};
+    }
+  }
 }
 
 ElementId SceneBuilder::ElementAt(const Curve& curve, double arc_length) const {

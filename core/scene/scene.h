@@ -73,6 +73,9 @@ struct Receiver {
 struct Probe {
   std::string name;
   CurveId curve = CurveId::kNone;  // kNone: free points.
+  bool on_curve = false;           // Every point lies on a piece of `curve`, and looks to the same side of it.
+  Point2 low;                      // All points lie in this box.
+  Point2 high;
   std::vector<Receiver> receivers;
 };
 

@@ -15,7 +15,7 @@ constexpr double kRounding = 32 * 0x1p-53;
 
 double MeanEstimate::StandardError() const {
   const double spread = std::sqrt(variance * degrees_of_freedom / (degrees_of_freedom - 2) + unresolved * unresolved);
-  return std::max(spread, kRounding * std::abs(mean));
+  return std::max(spread, kRounding * std::abs(mean) + rounding);
 }
 
 MeanEstimate EstimateMean(std::span<const double> values, double step) {
@@ -38,6 +38,7 @@ MeanEstimate Average(const MeanEstimate& a, const MeanEstimate& b) {
   average.mean = (a.mean + b.mean) / 2;
   average.variance = (a.variance + b.variance) / 4;
   average.unresolved = std::sqrt(a.unresolved * a.unresolved + b.unresolved * b.unresolved) / 2;
+  average.rounding = (a.rounding + b.rounding) / 2;
   const double sum = a.variance + b.variance;
   const double weights =
       a.variance * (a.variance / a.degrees_of_freedom) + b.variance * (b.variance / b.degrees_of_freedom);

@@ -19,9 +19,10 @@ struct MeanEstimate {
   double variance = 0;
   double degrees_of_freedom = 1;
   double unresolved = 0;  // Standard error of what all values may have missed alike, added in quadrature.
+  double rounding = 0;    // Of the arithmetic behind the values, beyond that of sums.
 
   // (mean - truth) / standard error has variance 1: the t distribution of nu degrees of freedom, which the plain ratio
-  // follows if the values are normal, has variance nu / (nu - 2). Never below the rounding of the sums behind the mean.
+  // follows if the values are normal, has variance nu / (nu - 2). Never below the rounding.
   double StandardError() const;
 };
 

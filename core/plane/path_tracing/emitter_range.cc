@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/plane/shaft.h"
+
 namespace flatlight {
 namespace {
 
@@ -13,7 +15,7 @@ using Kind = EmitterRange::Kind;
 EmitterRange ToHorizon(double sine, double cosine, bool upper) {
   const double toward = upper ? sine : -sine;
   const double width = toward > 0 ? cosine * cosine / (1 + toward) : 1 - toward;
-  return {width > 0 ? Kind::kSines : Kind::kNone, false, upper ? sine : -1, width};
+  return {width > 0 ? Kind::kSines : Kind::kNone, false, false, upper ? sine : -1, width};
 }
 
 // The sines between two points, seen from the vertex less than a half turn apart; cut at the horizon.
@@ -41,7 +43,7 @@ EmitterRange Between(Point2 p, Point2 q, const Vertex& vertex) {
   const double width = denominator < 0.125 * product
                            ? std::abs(sine_b - sine_a)
                            : std::abs(Cross(a, q - p)) * (height_a / length_a + height_b / length_b) / denominator;
-  return {width > 0 ? Kind::kSines : Kind::kNone, false, std::min(sine_a, sine_b), width};
+  return {width > 0 ? Kind::kSines : Kind::kNone, false, false, std::min(sine_a, sine_b), width};
 }
 
 EmitterRange SegmentRange(const Element& segment, EmittingSides sides, const Vertex& vertex) {
@@ -49,13 +51,19 @@ EmitterRange SegmentRange(const Element& segment, EmittingSides sides, const Ver
   // Positive where the vertex lies on the left, which is the front.
   const double facing = Cross(segment.b - segment.a, vertex.at.position - segment.a);
   if (facing == 0 || (facing < 0 && sides == EmittingSides::kFront)) return {};
-  return Between(segment.a, segment.b, vertex);
+  EmitterRange range = Between(segment.a, segment.b, vertex);
+  range.alone = true;
+  return range;
 }
 
-// A positive guess at the sines that an arc covers: its length over its distance, at most all.
+// A positive guess at the sines that an arc covers: its length over its distance, at most all. None if all of it is
+// below the horizon.
 EmitterRange ByLength(const Element& arc, const Vertex& vertex) {
+  const Corners corners = CornersOf(arc);
+  const auto below = [&](Point2 p) { return Dot(vertex.normal, p - vertex.at.position) <= 0; };
+  if (std::all_of(corners.point.begin(), corners.point.begin() + 3, below)) return {};
   const double distance = Length(arc.a + 0.5 * (arc.b - arc.a) - vertex.at.position);
-  return {Kind::kLength, false, -1, std::min(2.0, arc.length / distance)};
+  return {Kind::kLength, false, false, -1, std::min(2.0, arc.length / distance)};
 }
 
 EmitterRange ArcRangeFromInside(const Element& arc, EmittingSides sides, const Vertex& vertex) {
@@ -64,6 +72,7 @@ EmitterRange ArcRangeFromInside(const Element& arc, EmittingSides sides, const V
   if (!(arc.Orientation() * Cross(arc.b - arc.a, vertex.at.position - arc.a) > 0)) return ByLength(arc, vertex);
   EmitterRange range = Between(arc.a, arc.b, vertex);
   range.far = true;
+  range.alone = true;
   return range;
 }
 
@@ -81,6 +90,7 @@ EmitterRange ArcRangeFromOutside(const Element& arc, EmittingSides sides, const 
   EmitterRange range;
   if (outer_a && outer_b) {
     if (outer) range = Between(arc.a, arc.b, vertex);
+    range.alone = true;
     return range;
   }
   if (!outer_a && !outer_b && !nearest_inside) {
@@ -95,7 +105,11 @@ EmitterRange ArcRangeFromOutside(const Element& arc, EmittingSides sides, const 
   const Vector2 side = (turn * arc.radius * CosineOf(std::min(cosine, 1.0)) / distance) * Left(from_center);
   const Point2 silhouette_a = arc.center + (middle - side);  // Before the nearest point, in the sense of the arc.
   const Point2 silhouette_b = arc.center + (middle + side);
-  if (outer) return Between(outer_a ? arc.a : silhouette_a, outer_b ? arc.b : silhouette_b, vertex);
+  if (outer) {
+    range = Between(outer_a ? arc.a : silhouette_a, outer_b ? arc.b : silhouette_b, vertex);
+    range.alone = true;
+    return range;
+  }
   range = outer_a ? Between(silhouette_b, arc.b, vertex) : Between(arc.a, silhouette_a, vertex);
   range.far = true;
   return range;

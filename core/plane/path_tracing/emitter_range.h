@@ -21,7 +21,8 @@ struct EmitterRange {
     kLength,  // Not one such interval (an arc seen partly from inside, partly from outside): sample its length.
   };
   Kind kind = Kind::kNone;
-  bool far = false;  // kSines, arcs: a ray meets the piece where it leaves the circle, not where it enters it.
+  bool far = false;    // kSines, arcs: a ray meets the piece where it leaves the circle, not where it enters it.
+  bool alone = false;  // Nothing of the piece's own line or circle comes before any of these points.
   double low = 0;
   double width = 0;  // kLength: a guess at it, positive.
 };

@@ -17,51 +17,27 @@ constexpr std::size_t kMostSummed = 4096;
 
 }  // namespace
 
-EmitterSampler::EmitterSampler(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+EmitterSampler::EmitterSampler(std::shared_ptr<const Scene> scene, const std::vector<ElementId>& pieces)
+    : scene_(std::move(scene)) {
   double power = 0;
   piece_of_element_.assign(scene_->elements().size(), kNotAPiece);
-  for (std::size_t i = 0; i < scene_->elements().size(); ++i) {
-    const Element& element = scene_->elements()[i];
+  for (const ElementId id : pieces) {
+    const Element& element = scene_->element(id);
     const Curve& curve = scene_->curve(element.curve);
-    if (!curve.Emits()) continue;
     Piece piece;
-    piece.id = static_cast<ElementId>(i);
+    piece.id = id;
     piece.element = element;
     piece.sides = curve.two_sided ? EmittingSides::kBoth : EmittingSides::kFront;
     piece.radiance = curve.radiance;
     piece.brightness = curve.radiance.Max();
     power += piece.brightness * element.length * (curve.two_sided ? 2 : 1);
     piece.power_end = power;
-    piece_of_element_[i] = static_cast<std::uint32_t>(pieces_.size());
+    piece_of_element_[static_cast<std::size_t>(id)] = static_cast<std::uint32_t>(pieces_.size());
     pieces_.push_back(piece);
   }
 }
 
-std::size_t EmitterSampler::DropUnseen() {
-  // What passes through a receiver is seen from a little farther on.
-  const double near = 2 * kOnwardTouches * scene_->touch_distance();
-  const auto sees = [&](const Receiver& receiver, const Piece& piece) {
-    const Vertex vertex = VertexAt(*scene_, receiver);
-    return RangeOf(piece.element, piece.sides, vertex).kind != EmitterRange::Kind::kNone ||
-           (vertex.carrier != piece.element.carrier && DistanceTo(piece.element, receiver.position) <= near);
-  };
-  const auto unseen = [&](const Piece& piece) {
-    for (const Probe& probe : scene_->probes()) {
-      for (const Receiver& receiver : probe.receivers)
-        if (sees(receiver, piece)) return false;
-    }
-    return true;
-  };
-  const std::size_t before = pieces_.size();
-  pieces_.erase(std::remove_if(pieces_.begin(), pieces_.end(), unseen), pieces_.end());
-  piece_of_element_.assign(piece_of_element_.size(), kNotAPiece);
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    piece_of_element_[static_cast<std::size_t>(pieces_[i].id)] = static_cast<std::uint32_t>(i);
-  }
-  return before - pieces_.size();
-}
-
-Spectrum EmitterSampler::Unblocked(const Vertex& vertex) const {
+Spectrum EmitterSampler::Unblocked(const Vertex& vertex, const Sight& sight) const {
   const std::size_t stride = pieces_.size() / kMostSummed + 1;
   Spectrum sum;
   Spectrum brightest;
@@ -69,6 +45,7 @@ Spectrum EmitterSampler::Unblocked(const Vertex& vertex) const {
     const Piece& piece = pieces_[i];
     const EmitterRange range = RangeOf(piece.element, piece.sides, vertex);
     if (range.kind == EmitterRange::Kind::kNone) continue;
+    if (IsHidden(i, sight) || IsCertain(i, range, sight)) continue;
     sum = sum + (static_cast<double>(stride) * range.width) * piece.radiance;
     for (int c = 0; c < kMaxChannels; ++c) brightest[c] = std::max(brightest[c], piece.radiance[c]);
   }
@@ -77,7 +54,23 @@ Spectrum EmitterSampler::Unblocked(const Vertex& vertex) const {
   return sum;
 }
 
-EmitterSampler::View::View(const EmitterSampler& sampler, const Vertex& vertex) : sampler_(sampler), vertex_(vertex) {
+Spectrum EmitterSampler::Rounding(const Vertex& vertex, const Sight& sight) const {
+  // Each end is seen in a direction known to the coordinates' error over its distance (as for exact light, edge.cc).
+  Spectrum sum;
+  const std::size_t stride = pieces_.size() / kMostSummed + 1;
+  for (std::size_t i = 0; i < pieces_.size(); i += stride) {
+    const Piece& piece = pieces_[i];
+    if (IsHidden(i, sight)) continue;
+    if (RangeOf(piece.element, piece.sides, vertex).kind == EmitterRange::Kind::kNone) continue;
+    const double distance = DistanceTo(piece.element, vertex.at.position);
+    const double turn = 2 * scene_->coordinate_error() / distance + 8 * kUnitRoundoff;
+    sum = sum + (2 * static_cast<double>(stride) * std::min(turn, 1.0)) * piece.radiance;
+  }
+  return sum;
+}
+
+EmitterSampler::View::View(const EmitterSampler& sampler, const Vertex& vertex, const Sight& sight)
+    : sampler_(sampler), vertex_(vertex) {
   if (!sampler_.weighs()) {
     total_ = sampler_.pieces_.back().power_end;
     return;
@@ -85,8 +78,14 @@ EmitterSampler::View::View(const EmitterSampler& sampler, const Vertex& vertex) 
   double dimmest = std::numeric_limits<double>::infinity();
   bool by_length = false;
   for (std::size_t i = 0; i < sampler_.pieces_.size(); ++i) {
-    seen_[i] = See(i);
+    seen_[i] = sampler_.IsHidden(i, sight) ? Seen{} : See(i);
     if (seen_[i].weight == 0) continue;
+    if (sampler_.IsCertain(i, seen_[i].range, sight)) {
+      certain_ = certain_ + seen_[i].range.width * sampler_.pieces_[i].radiance;
+      certain_pieces_ |= std::uint32_t{1} << i;
+      seen_[i].weight = 0;
+      continue;
+    }
     total_ += seen_[i].weight;
     dimmest = std::min(dimmest, sampler_.pieces_[i].brightness);
     by_length = by_length || seen_[i].range.kind == EmitterRange::Kind::kLength;
@@ -100,6 +99,13 @@ EmitterSampler::View::Seen EmitterSampler::View::See(std::size_t index) const {
   seen.range = RangeOf(piece.element, piece.sides, vertex_);
   if (seen.range.kind != EmitterRange::Kind::kNone) seen.weight = piece.brightness * seen.range.width;
   return seen;
+}
+
+SurfacePoint EmitterSampler::View::PlaceOn(std::size_t piece, double u) const {
+  const EmitterRange& range = seen_[piece].range;
+  const double sine = std::clamp(range.low + u * range.width, -1.0, 1.0);
+  const Vector2 direction = vertex_.Direction(sine, CosineOf(sine));
+  return {PointInDirection(sampler_.pieces_[piece].element, range, vertex_, direction), sampler_.pieces_[piece].id};
 }
 
 std::optional<EmitterSample> EmitterSampler::View::Sample(double u) const {
@@ -161,7 +167,9 @@ std::optional<EmitterSample> EmitterSampler::View::SampleLength(std::size_t inde
 
 double EmitterSampler::View::Density(const Hit& hit, Vector2 direction, double cosine) const {
   const std::uint32_t index = sampler_.piece_of_element_[static_cast<std::size_t>(hit.element)];
-  if (index == kNotAPiece || total_ == 0) return 0;
+  if (index == kNotAPiece) return 0;
+  if (certain_pieces_ != 0 && ((certain_pieces_ >> index) & 1) != 0) return std::numeric_limits<double>::infinity();
+  if (total_ == 0) return 0;
   const Piece& piece = sampler_.pieces_[index];
   const Seen seen = sampler_.weighs() ? seen_[index] : See(index);
   if (seen.weight == 0) return 0;

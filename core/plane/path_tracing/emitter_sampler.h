@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/plane/path_tracing/emitter_range.h"
+#include "core/plane/path_tracing/sights.h"
 #include "core/plane/path_tracing/vertex.h"
 #include "core/scene/scene.h"
 
@@ -30,36 +31,48 @@ struct EmitterSample {
 class EmitterSampler {
  public:
   static constexpr std::size_t kMostWeighed = 16;
+  static_assert(kMostWeighed <= Sight::kMost);
 
-  explicit EmitterSampler(std::shared_ptr<const Scene> scene);
+  // `pieces`: which to sample, in the order of elements; all others never light a vertex that will be asked about.
+  EmitterSampler(std::shared_ptr<const Scene> scene, const std::vector<ElementId>& pieces);
 
-  // Leaves out pieces that light none of the receivers directly, as far as a cheap proof goes: each receiver lies
-  // behind the piece's line, or the piece below the receiver's horizon. Changes no result if only direct light is
-  // wanted. Returns how many were left out.
-  std::size_t DropUnseen();
-
-  // Irradiance from all pieces if nothing blocked them; a guess for arcs seen partly from inside, and for thousands of
-  // pieces.
-  Spectrum Unblocked(const Vertex& vertex) const;
+  // Irradiance from all pieces but those whose way is known to be clear or hidden, if nothing blocked them; a guess for
+  // arcs seen partly from inside, and for thousands of pieces.
+  Spectrum Unblocked(const Vertex& vertex, const Sight& sight) const;
+  // The rounding of directions in irradiance from all pieces that are not hidden.
+  Spectrum Rounding(const Vertex& vertex, const Sight& sight) const;
 
   bool empty() const { return pieces_.empty(); }
   // Whether emitters are weighed at every vertex.
   bool weighs() const { return pieces_.size() <= kMostWeighed; }
 
-  // The emitters as seen from one vertex. Refers to both arguments.
+  // The emitters as seen from one vertex. Refers to the first two arguments. Where emitters are weighed, the sight
+  // counts: those that it knows to be hidden are left out, and the light of those whose way is clear is certain() and
+  // not sampled.
   class View {
    public:
-    View(const EmitterSampler& sampler, const Vertex& vertex);
+    View(const EmitterSampler& sampler, const Vertex& vertex, const Sight& sight);
 
-    // No emitter can light the vertex.
+    // No emitter can light the vertex, certain light aside.
     bool empty() const { return total_ == 0; }
+    // Irradiance from the emitters whose way is clear: radiance times the difference of sines.
+    const Spectrum& certain() const { return certain_; }
+    bool any_certain() const { return certain_pieces_ != 0; }
+    // Calls visit(point) for a point of each of these emitters, chosen by the same number for all.
+    template <typename Visit>
+    void VisitCertain(double u, Visit visit) const {
+      for (std::uint32_t i = 0; (certain_pieces_ >> i) != 0; ++i) {
+        if (((certain_pieces_ >> i) & 1) != 0) visit(PlaceOn(i, u));
+      }
+    }
     // Emitter sampling alone has no more variance than cosine sampling alone: rays that hit an emitter by chance need
     // not be counted. The variances are T * E - E^2 and 2 * (integral of L^2 V ds) - E^2, where T is the irradiance
     // that emitters would give unblocked; so it is enough that T <= 2 * (smallest radiance in view).
     bool sufficient() const { return sufficient_; }
     // A point chosen by one number in [0, 1). Absent if it does not light the vertex.
     std::optional<EmitterSample> Sample(double u) const;
-    // The density per radian with which Sample gives the point `hit`, in `direction` of this cosine.
+    // The density per radian with which Sample gives the point `hit`, in `direction` of this cosine; infinite if its
+    // light is certain.
     double Density(const Hit& hit, Vector2 direction, double cosine) const;
 
    private:
@@ -68,16 +81,25 @@ class EmitterSampler {
       double weight = 0;  // 0 if the range is empty.
     };
     Seen See(std::size_t piece) const;
+    SurfacePoint PlaceOn(std::size_t piece, double u) const;
     std::optional<EmitterSample> SampleLength(std::size_t piece, double probability, double u) const;
 
     const EmitterSampler& sampler_;
     const Vertex& vertex_;
+    Spectrum certain_;
+    std::uint32_t certain_pieces_ = 0;     // Bit by piece.
     std::array<Seen, kMostWeighed> seen_;  // By piece, if weighed.
     double total_ = 0;
     bool sufficient_ = false;
   };
 
  private:
+  // Whether the light of a piece that is seen so is certain.
+  bool IsCertain(std::size_t piece, const EmitterRange& range, const Sight& sight) const {
+    return weighs() && range.kind == EmitterRange::Kind::kSines && range.alone && ((sight.clear >> piece) & 1) != 0;
+  }
+  bool IsHidden(std::size_t piece, const Sight& sight) const { return weighs() && ((sight.hidden >> piece) & 1) != 0; }
+
   struct Piece {
     ElementId id = ElementId::kNone;
     Element element;

@@ -6,6 +6,9 @@
 #include <cstddef>
 #include <limits>
 
+#include "core/math/check.h"
+#include "core/plane/path_tracing/emitter_reach.h"
+
 namespace flatlight {
 namespace {
 
@@ -14,6 +17,7 @@ namespace {
 // longer than its share of the light is worth.
 constexpr double kRouletteBelow = 0.25;
 constexpr double kSurvivorWeight = 0.5;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Weight of the first of two techniques.
 double PowerHeuristic(double density, double other_density) {
@@ -26,37 +30,59 @@ double Largest(const std::array<double, kChannels>& weight) {
   return *std::max_element(weight.begin(), weight.end());
 }
 
+std::vector<ElementId> EmittingPieces(const RayCaster& caster, const PathTracingOptions& options) {
+  const Scene& scene = caster.scene();
+  const EmitterReach reach = ReachOfEmitters(scene, ReachNeedsTree(scene) ? &caster.bvh() : nullptr);
+  const bool bounces = options.max_bounces != 0u && scene.traits().max_reflectance > 0;
+  std::vector<ElementId> pieces;
+  for (const EmitterReach::Piece& piece : reach.pieces) {
+    const bool seen = piece.lights_points || (bounces && piece.lights_reflectors);
+    if (seen || !options.drop_unseen_emitters || reach.pieces.size() > EmitterSampler::kMostWeighed)
+      pieces.push_back(piece.id);
+  }
+  return pieces;
+}
+
 }  // namespace
+
+PathTracer::Start::Start(const PathTracer& tracer, const Receiver& receiver, const Sight& sight)
+    : tracer_(tracer), vertex_(VertexAt(tracer.scene_, receiver)), view_(tracer.emitters_, vertex_, sight) {}
 
 PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracingOptions& options)
     : caster_(std::move(caster)),
       scene_(caster_->scene()),
       options_(options),
       channels_(options.one_channel ? 1 : kMaxChannels),
-      emitters_(std::shared_ptr<const Scene>(caster_, &caster_->scene())) {
-  if (options_.drop_unseen_emitters && emitters_.weighs()) emitters_.DropUnseen();
+      emitting_(EmittingPieces(*caster_, options)),
+      emitters_(std::shared_ptr<const Scene>(caster_, &caster_->scene()), emitting_),
+      sights_(*caster_, emitters_.weighs() ? emitting_ : std::vector<ElementId>()) {
   surfaces_.reserve(scene_.curves().size());
   for (const Curve& curve : scene_.curves()) {
     surfaces_.push_back({curve.reflectance, curve.EmittedRadiance(Side::kFront), curve.EmittedRadiance(Side::kBack)});
   }
 }
 
-Spectrum PathTracer::DirectStep(const Receiver& receiver) const {
-  return options_.nothing_blocks ? Spectrum{} : emitters_.Unblocked(VertexAt(scene_, receiver));
+Spectrum PathTracer::DirectStep(const Receiver& receiver, const Sight& sight) const {
+  return options_.nothing_blocks ? Spectrum{} : emitters_.Unblocked(VertexAt(scene_, receiver), sight);
 }
 
-void PathTracer::AddPath(const Receiver& receiver, const SampleStream& stream, std::uint32_t index,
+Spectrum PathTracer::DirectRounding(const Receiver& receiver, const Sight& sight) const {
+  return emitters_.Rounding(VertexAt(scene_, receiver), sight);
+}
+
+void PathTracer::AddPath(const Start& start, const SampleStream& stream, std::uint32_t index,
                          const Cancellation& cancellation, std::span<double> irradiance, double& rays) const {
+  FLATLIGHT_DCHECK(&start.tracer_ == this);
   if (emitters_.empty()) return;
   if (channels_ == 1) {
-    AddPathOf<1>(receiver, stream, index, cancellation, irradiance, rays);
+    AddPathOf<1>(start, stream, index, cancellation, irradiance, rays);
   } else {
-    AddPathOf<kMaxChannels>(receiver, stream, index, cancellation, irradiance, rays);
+    AddPathOf<kMaxChannels>(start, stream, index, cancellation, irradiance, rays);
   }
 }
 
 template <int kChannels>
-void PathTracer::AddPathOf(const Receiver& receiver, const SampleStream& stream, std::uint32_t index,
+void PathTracer::AddPathOf(const Start& start, const SampleStream& stream, std::uint32_t index,
                            const Cancellation& cancellation, std::span<double> irradiance, double& rays) const {
   std::array<double, kChannels> value{};
   std::array<double, kChannels> weight;
@@ -65,15 +91,28 @@ void PathTracer::AddPathOf(const Receiver& receiver, const SampleStream& stream,
     for (std::size_t c = 0; c < kChannels; ++c) value[c] += weight[c] * (factor * radiance.value[c]);
   };
   const std::uint32_t last_depth = options_.max_bounces.value_or(std::numeric_limits<std::uint32_t>::max());
-  Vertex vertex = VertexAt(scene_, receiver);
+  Vertex vertex = start.vertex_;
+  std::optional<EmitterSampler::View> later_view;
   for (std::uint32_t depth = 0; !cancellation.cancelled(); ++depth) {
     const bool last = depth == last_depth;
     const SamplePair random = stream.Pair(index, depth);
-    const EmitterSampler::View view(emitters_, vertex);
+    if (depth > 0) later_view.emplace(emitters_, vertex, sights_.FromElement(vertex));
+    const EmitterSampler::View& view = depth == 0 ? start.view_ : *later_view;
+    if (view.any_certain()) {
+      bool proved = true;
+      if (!options_.leave_out_shadow_rays) {
+        view.VisitCertain(random.u, [&](const SurfacePoint& point) {
+          ++rays;
+          proved = proved && caster_->Visible(vertex.at, point);
+        });
+      }
+      if (proved) add(1, view.certain());
+    }
     if (!view.empty()) {
       if (const std::optional<EmitterSample> sample = view.Sample(random.u)) {
-        if (!options_.leave_out_shadow_rays) ++rays;
-        if (options_.leave_out_shadow_rays || caster_->Visible(vertex.at, sample->point)) {
+        const bool left_out = options_.leave_out_shadow_rays && options_.nothing_blocks;
+        if (!left_out) ++rays;
+        if (left_out || caster_->Visible(vertex.at, sample->point)) {
           const double share = view.sufficient() ? 1 : PowerHeuristic(sample->density, sample->cosine / 2);
           add(share * (sample->cosine / sample->density), sample->radiance);
         }
@@ -96,7 +135,7 @@ void PathTracer::AddPathOf(const Receiver& receiver, const SampleStream& stream,
       const double emitter_density = view.Density(*hit, direction, cosine);
       if (emitter_density == 0) {
         add(2, radiance);
-      } else if (!view.sufficient()) {
+      } else if (!view.sufficient() && emitter_density < kInfinity) {
         add(2 * PowerHeuristic(cosine / 2, emitter_density), radiance);
       }
     }

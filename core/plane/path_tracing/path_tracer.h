@@ -10,6 +10,7 @@
 
 #include "core/execution/cancellation.h"
 #include "core/plane/path_tracing/emitter_sampler.h"
+#include "core/plane/path_tracing/sights.h"
 #include "core/plane/path_tracing/vertex.h"
 #include "core/plane/ray_caster.h"
 #include "core/sampling/sample_stream.h"
@@ -22,12 +23,13 @@ struct PathTracingOptions {
   bool nothing_blocks = false;               // It is certain that no curve stands between emitters and points.
   // Work that a scene may not need. Where they are allowed these change no result.
   bool one_channel = false;            // Allowed if all spectra are grey.
-  bool leave_out_shadow_rays = false;  // Allowed if nothing blocks.
+  bool leave_out_shadow_rays = false;  // Where nothing can block them.
   bool end_black_paths = false;        // Ends a path where it meets a black surface.
-  bool drop_unseen_emitters = false;   // Allowed if only direct light is wanted.
+  bool drop_unseen_emitters = false;   // Those of which no light comes to a point or a curve that reflects.
 };
 
-// Irradiance by paths from the receiver. At each vertex the emitters are sampled, and the path goes on in a direction
+// Irradiance by paths from the receiver. At each vertex the light of emitters to which the way is clear is added in
+// closed form, the others are sampled, and the path goes on in a direction
 // with density cos(theta)/2 (sin(theta) uniform); both reach emitters and are combined by the power heuristic (Veach
 // 1997, 9.2) with densities per angle. With reflectance rho and Lambertian curves
 //   E = (sampled emitters) + w 2 Le(hit) + rho(hit) E(hit, on the side that was hit).
@@ -39,14 +41,33 @@ class PathTracer {
   // 1 or 3.
   int channels() const { return channels_; }
 
-  // What the emitters would give the receiver if nothing blocked them, 0 if nothing can block them: the most by which
+  // A receiver and what its paths have in common. Keeps a reference to the tracer.
+  class Start {
+   public:
+    Start(const PathTracer& tracer, const Receiver& receiver, const Sight& sight);
+    Start(const Start&) = delete;
+    Start& operator=(const Start&) = delete;
+
+   private:
+    friend class PathTracer;
+    const PathTracer& tracer_;
+    Vertex vertex_;
+    EmitterSampler::View view_;
+  };
+
+  // What shapes tell of the ways from the receiver to the emitters: worth remembering.
+  Sight SightFrom(const Receiver& receiver) const { return sights_.FromPoint(VertexAt(scene_, receiver)); }
+
+  // What the emitters that may be blocked or not would give the receiver if nothing blocked them: the most by which
   // finding a ray blocked or not can change a sample of direct light.
-  Spectrum DirectStep(const Receiver& receiver) const;
+  Spectrum DirectStep(const Receiver& receiver, const Sight& sight) const;
+  // The rounding of direct light, which all samples share.
+  Spectrum DirectRounding(const Receiver& receiver, const Sight& sight) const;
 
   // Adds the estimate of one path to `irradiance` (channels() values, normalised), and the rays cast to `rays`. The
   // path is a function of the receiver and of stream and index. Stops early, with a value of no use, if cancelled.
-  void AddPath(const Receiver& receiver, const SampleStream& stream, std::uint32_t index,
-               const Cancellation& cancellation, std::span<double> irradiance, double& rays) const;
+  void AddPath(const Start& start, const SampleStream& stream, std::uint32_t index, const Cancellation& cancellation,
+               std::span<double> irradiance, double& rays) const;
 
  private:
   // What a path needs of a curve.
@@ -57,14 +78,16 @@ class PathTracer {
   };
 
   template <int kChannels>
-  void AddPathOf(const Receiver& receiver, const SampleStream& stream, std::uint32_t index,
-                 const Cancellation& cancellation, std::span<double> irradiance, double& rays) const;
+  void AddPathOf(const Start& start, const SampleStream& stream, std::uint32_t index, const Cancellation& cancellation,
+                 std::span<double> irradiance, double& rays) const;
 
   std::shared_ptr<const RayCaster> caster_;
   const Scene& scene_;
   PathTracingOptions options_;
   int channels_;
+  std::vector<ElementId> emitting_;
   EmitterSampler emitters_;
+  Sights sights_;
   std::vector<Surface> surfaces_;  // By curve.
 };
 

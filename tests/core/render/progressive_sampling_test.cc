@@ -32,7 +32,7 @@ class UniformSampler final : public PointSampler {
   explicit UniformSampler(ManualClock* clock = nullptr, Clock::Duration block_time = {})
       : clock_(clock), block_time_(block_time) {}
   std::size_t channels() const override { return 1; }
-  void Steps(std::size_t, std::span<double> steps) const override { steps[0] = 0; }
+  void Doubts(std::size_t, std::span<Doubt> doubts) const override { doubts[0] = {}; }
   void AddBlock(std::size_t point, std::uint32_t block, const Cancellation&, std::span<double> sums,
                 double& rays) const override {
     for (std::size_t r = 0; r < kReplicates; ++r) {
@@ -146,7 +146,7 @@ class RareSampler final : public PointSampler {
  public:
   explicit RareSampler(std::uint64_t seed) : seed_(seed) {}
   std::size_t channels() const override { return 1; }
-  void Steps(std::size_t, std::span<double> steps) const override { steps[0] = 0; }
+  void Doubts(std::size_t, std::span<Doubt> doubts) const override { doubts[0] = {}; }
   void AddBlock(std::size_t, std::uint32_t block, const Cancellation&, std::span<double> sums, double&) const override {
     for (std::size_t r = 0; r < kReplicates; ++r) {
       sums[r] += ToUnitInterval(ChildKey(ChildKey(seed_, block), r)) < 0.02 ? 1 : 0;

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,16 @@
 
 namespace flatlight {
 namespace {
+
+void ExpectSameBits(const Field& a, const Field& b) {
+  ASSERT_EQ(a.probes.size(), b.probes.size());
+  for (std::size_t p = 0; p < a.probes.size(); ++p) {
+    EXPECT_EQ(a.probes[p].irradiance, b.probes[p].irradiance);
+    EXPECT_EQ(a.probes[p].gradient, b.probes[p].gradient);
+    EXPECT_EQ(a.probes[p].samples, b.probes[p].samples);
+    EXPECT_EQ(a.probes[p].standard_error, b.probes[p].standard_error);
+  }
+}
 
 TEST(SkipsTest, EverySkipLeavesTheSameBits) {
   struct Case {
@@ -37,6 +49,19 @@ TEST(SkipsTest, EverySkipLeavesTheSameBits) {
   partly_black.Segment("wall", {1.5, 0}, {1.5, 1}, {.reflectance = {0.8}});
   SceneMaker turned = black;
   turned.Segment("turned", {0, 2}, {1, 2}, {.radiance = {1}}).Segment("below", {0, -1}, {1, -1}, {.radiance = {2}});
+  SceneMaker white_lamp;
+  white_lamp.Segment("floor", {0, 0}, {1, 0}).Segment("blocker", {0.5, 0.5}, {1.2, 0.5}).Probe("floor", 5);
+  white_lamp.Segment("lamp", {1, 1}, {0, 1}, {.reflectance = {0.9}, .radiance = {1}});
+  SceneMaker beside_post = FurnishedRoom(true, 5);
+  SceneMaker round_room;
+  round_room.Arc("room", {{0, 0}, 1, 0, 6.283185307179586}, {.reflectance = {0.6}}).Probe("room", 8);
+  round_room.Arc("sun", {{0.3, 0.2}, 0.2, 0, -6.283185307179586}, {.reflectance = {0.2}, .radiance = {2}});
+  round_room.Arc("moon", {{-0.4, -0.3}, 0.1, 0, -6.283185307179586}, {.reflectance = {0.5}}).Probe("moon", 5);
+  SceneMaker turned_room = black;
+  turned_room.Segment("wall", {1.5, 0}, {1.5, 1}, {.reflectance = {0.8}});
+  turned_room.Segment("turned", {0, 2}, {1, 2}, {.radiance = {1}});
+  SceneMaker screened = turned_room;
+  screened.Segment("far lamp", {1, 9}, {0, 9}, {.radiance = {5}}).Segment("screen", {-9, 3}, {9, 3});
   SceneMaker grey = FurnishedRoom(true, 3);
   SceneMaker grey3 = UnitLight();
   grey3.Segment("wall", {1.5, 0}, {1.5, 1}, {.reflectance = {0.5, 0.5, 0.5}}).Probe("floor", 3);
@@ -54,31 +79,77 @@ TEST(SkipsTest, EverySkipLeavesTheSameBits) {
       {"facing exact", facing.Build(), exact, skip::kVisibility},
       {"no derivatives", grey.Build(), exact_value, skip::kDerivatives},
       {"black", black.Build(), Sampled(64), skip::kBounces},
-      {"black paths", black.Build(), Sampled(64), skip::kBlackPaths},
+      {"white lamp over black", white_lamp.Build(), Sampled(64), skip::kBounces},
       {"partly black", partly_black.Build(), Sampled(64), skip::kBlackPaths},
+      {"clear of the post", beside_post.Build(), Sampled(64), skip::kVisibility},
+      {"clear of the post, direct", beside_post.Build(), direct, skip::kVisibility},
+      {"round room", round_room.Build(), Sampled(64), skip::kVisibility},
       {"turned away", turned.Build(), direct, skip::kUnseenEmitters},
+      {"turned away from walls", turned_room.Build(), Sampled(64), skip::kUnseenEmitters},
+      {"behind a screen", screened.Build(), Sampled(64), skip::kUnseenEmitters},
       {"converged", convex.Build(), target, skip::kConvergedPoints},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.name);
     const Plan plan = PlanFor(*c.scene, c.settings);
-    EXPECT_TRUE(plan.Takes(c.skip));
+    ASSERT_TRUE(plan.Takes(c.skip));
     Settings disabled = c.settings;
     disabled.no_skip = {c.skip};
     EXPECT_TRUE(PlanFor(*c.scene, disabled).Disables(c.skip));
     const Ended with = Render(c.scene, c.settings);
     const Ended without = Render(c.scene, disabled);
-    ASSERT_EQ(with.field->probes.size(), without.field->probes.size());
-    for (std::size_t p = 0; p < with.field->probes.size(); ++p) {
-      EXPECT_EQ(with.field->probes[p].irradiance, without.field->probes[p].irradiance);
-      EXPECT_EQ(with.field->probes[p].gradient, without.field->probes[p].gradient);
-      EXPECT_EQ(with.field->probes[p].samples, without.field->probes[p].samples);
-      EXPECT_EQ(with.field->probes[p].standard_error, without.field->probes[p].standard_error);
-    }
+    ExpectSameBits(*with.field, *without.field);
     if (c.skip == skip::kConvergedPoints || c.skip == skip::kVisibility || c.skip == skip::kBounces) {
       EXPECT_LE(with.field->rays, without.field->rays);
     }
   }
+}
+
+// Walls, lamps and arcs thrown about, some of them black: every skip that any of them takes, by either method.
+TEST(SkipsTest, RandomScenesKeepTheirBits) {
+  std::map<std::string, int> taken;
+  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> place(-1, 1);
+    std::uniform_real_distribution<double> unit(0, 1);
+    SceneMaker maker;
+    const int curves = 2 + static_cast<int>(6 * unit(random));
+    for (int i = 0; i < curves; ++i) {
+      const std::string name = "curve " + std::to_string(i);
+      Look look{.reflectance = {unit(random) < 0.6 ? 0.0 : unit(random)}};
+      if (unit(random) < 0.4) look.radiance = {unit(random)}, look.two_sided = unit(random) < 0.2;
+      const Point2 a{place(random), place(random)};
+      if (unit(random) < 0.7) {
+        maker.Segment(name, a, a + Vector2{place(random), place(random)}, look);
+      } else {
+        const double sweep = unit(random) < 0.5 ? 6.283185307179586 : 0.3 + 3 * unit(random);
+        maker.Arc(name, {a, 0.1 + 0.9 * unit(random), 6 * unit(random), unit(random) < 0.5 ? sweep : -sweep}, look);
+      }
+    }
+    maker.Probe("curve 0", 3, unit(random) < 0.5 ? Side::kFront : Side::kBack);
+    if (unit(random) < 0.5) maker.PointProbe({place(random), place(random)}, {place(random), place(random)});
+    const std::shared_ptr<const Scene> scene = maker.Build();
+    Settings direct = Sampled(32);
+    direct.max_bounces = 0;
+    Settings exact;
+    exact.method = Method::kExact;
+    exact.max_bounces = 0;
+    for (const Settings& settings : {Sampled(32), direct, exact}) {
+      const Ended with = Render(scene, settings);
+      for (const SkipEntry& entry : PlanFor(*scene, settings).skips) {
+        if (entry.decision != SkipDecision::kTaken) continue;
+        SCOPED_TRACE(entry.name);
+        ++taken[entry.name];
+        Settings disabled = settings;
+        disabled.no_skip = {entry.name};
+        ExpectSameBits(*with.field, *Render(scene, disabled).field);
+      }
+    }
+  }
+  for (const char* name :
+       {skip::kEmission, skip::kVisibility, skip::kBounces, skip::kBlackPaths, skip::kUnseenEmitters})
+    EXPECT_GT(taken[name], 8) << name;
 }
 
 }  // namespace

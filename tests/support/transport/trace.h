@@ -19,18 +19,21 @@ inline MeanEstimate Trace(const PathTracer& tracer, const Scene& scene, const Re
                           std::uint64_t point, std::uint32_t samples_per_replicate, double factor = 1) {
   const Cancellation never;
   const double scale = scene.frame().radiance_scale * factor;
+  const Sight sight = tracer.SightFrom(receiver);
+  const PathTracer::Start start(tracer, receiver, sight);
   std::array<double, kReplicates> means{};
   double rays = 0;
   for (std::size_t replicate = 0; replicate < kReplicates; ++replicate) {
     const SampleStream stream(seed, point, replicate);
     std::array<double, kMaxChannels> sums{};
     for (std::uint32_t i = 0; i < samples_per_replicate; ++i) {
-      tracer.AddPath(receiver, stream, i, never, std::span(sums).first(static_cast<std::size_t>(tracer.channels())),
-                     rays);
+      tracer.AddPath(start, stream, i, never, std::span(sums).first(static_cast<std::size_t>(tracer.channels())), rays);
     }
     means[replicate] = scale * sums[0] / samples_per_replicate;
   }
-  return EstimateMean(means, scale * tracer.DirectStep(receiver)[0] / samples_per_replicate);
+  MeanEstimate estimate = EstimateMean(means, scale * tracer.DirectStep(receiver, sight)[0] / samples_per_replicate);
+  estimate.rounding = scale * tracer.DirectRounding(receiver, sight)[0];
+  return estimate;
 }
 
 }  // namespace flatlight

@@ -186,7 +186,8 @@ TEST(PathTracerTest, CancellationEndsAPathAtItsNextVertex) {
   cancelled.Cancel();
   double rays = 0;
   std::array<double, kMaxChannels> value{};
-  room.tracer.AddPath(room.receiver(), SampleStream(0, 0, 0), 0, cancelled, value, rays);
+  const PathTracer::Start start(room.tracer, room.receiver(), {});
+  room.tracer.AddPath(start, SampleStream(0, 0, 0), 0, cancelled, value, rays);
   EXPECT_EQ(rays, 0);
 }
 

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What benchmark programs that write tables have in common: where they ran, how they time, what they print.
+#ifndef FLATLIGHT_TESTS_BENCH_BENCH_REPORT_H_
+#define FLATLIGHT_TESTS_BENCH_BENCH_REPORT_H_
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace flatlight {
+
+// Of the calling thread, s.
+double ThreadSeconds();
+
+struct Quartiles {
+  double lower = 0;
+  double median = 0;
+  double upper = 0;
+};
+// Of at least one value.
+Quartiles QuartilesOf(std::vector<double> values);
+
+std::string MachineName();  // The processor's.
+std::string CommitName();   // Of the tree that the program is started in; "unknown" outside of one.
+
+// Three significant digits.
+std::string Short(double value);
+
+// A table whose columns are as wide as they need, and the same rows as CSV with machine and commit in front.
+class BenchTable {
+ public:
+  explicit BenchTable(std::vector<std::string> columns) : columns_(std::move(columns)) {}
+
+  void Add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  void Print() const;
+  // False if the file could not be written.
+  bool WriteCsv(const std::string& path) const;
+
+ private:
+  std::vector<std::string> columns_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_TESTS_BENCH_BENCH_REPORT_H_
