@@ -48,8 +48,9 @@ class PathSampler final : public PointSampler {
   void Doubts(std::size_t point, std::span<Doubt> doubts) const override {
     const Sight sight = SightFrom(point);
     const Spectrum step = tracer_.DirectStep(points_[point], sight);
+    const Spectrum bright = tracer_.BrightestReflection();
     const Spectrum rounding = tracer_.DirectRounding(points_[point], sight);
-    for (std::size_t c = 0; c < doubts.size(); ++c) doubts[c] = {step.value[c], rounding.value[c]};
+    for (std::size_t c = 0; c < doubts.size(); ++c) doubts[c] = {step.value[c], bright.value[c], rounding.value[c]};
   }
 
   void AddBlock(std::size_t point, std::uint32_t block, const Cancellation& cancellation, std::span<double> sums,

@@ -23,10 +23,11 @@ PointBlocks::PointBlocks(const PointSampler& sampler, std::size_t points)
     : sampler_(sampler),
       channels_(sampler.channels()),
       trees_(points, BlockTree(sampler.channels() * kReplicates)),
-      doubts_(points * sampler.channels()) {}
+      doubts_(points * sampler.channels()),
+      ranges_(points * 2 * sampler.channels()) {}
 
-std::vector<MeanEstimate> PointBlocks::EstimatesOf(std::size_t point, std::size_t first_replicate,
-                                                   std::size_t count) const {
+std::vector<MeanEstimate> PointBlocks::EstimatesOf(std::size_t point, std::size_t first_replicate, std::size_t count,
+                                                   std::span<const double> steps) const {
   std::vector<double> means(trees_[point].width());
   trees_[point].Total(means);
   const auto samples = static_cast<double>(trees_[point].blocks());
@@ -34,17 +35,19 @@ std::vector<MeanEstimate> PointBlocks::EstimatesOf(std::size_t point, std::size_
   std::vector<MeanEstimate> estimates;
   for (std::size_t c = 0; c < channels_; ++c) {
     const std::span<const double> values(means.data() + c * kReplicates + first_replicate, count);
-    const PointSampler::Doubt& doubt = doubts_[point * channels_ + c];
-    estimates.push_back(EstimateMean(values, doubt.step / samples));
-    estimates.back().rounding = doubt.rounding;
+    estimates.push_back(EstimateMean(values, steps[c] / samples));
+    estimates.back().rounding = doubt(point, c).rounding;
   }
   return estimates;
 }
 
-std::vector<MeanEstimate> PointBlocks::Estimates(std::size_t point) const { return EstimatesOf(point, 0, kReplicates); }
+std::vector<MeanEstimate> PointBlocks::Estimates(std::size_t point, std::span<const double> steps) const {
+  return EstimatesOf(point, 0, kReplicates, steps);
+}
 
-std::array<CrossedHalves::HalfEstimate, 2> PointBlocks::HalfEstimates(std::size_t point) const {
-  return {EstimatesOf(point, 0, kHalfReplicates), EstimatesOf(point, kHalfReplicates, kHalfReplicates)};
+std::vector<MeanEstimate> PointBlocks::HalfEstimates(std::size_t point, std::size_t half,
+                                                     std::span<const double> steps) const {
+  return EstimatesOf(point, half * kHalfReplicates, kHalfReplicates, steps);
 }
 
 void PointBlocks::SetGoals(std::vector<std::uint64_t> goals) {
@@ -114,6 +117,7 @@ void PointBlocks::Work(Shard& shard, const Cancellation& cancellation) const {
   const std::size_t width = channels_ * kReplicates;
   std::vector<double> block(width);
   shard.nodes.resize(shard.pieces.size() * width);
+  shard.ranges.resize(shard.pieces.size() * 2 * channels_);
   for (std::size_t i = 0; i < shard.pieces.size(); ++i) {
     const Piece& piece = shard.pieces[i];
     BlockTree tree(width);
@@ -122,6 +126,11 @@ void PointBlocks::Work(Shard& shard, const Cancellation& cancellation) const {
       sampler_.AddBlock(piece.point, static_cast<std::uint32_t>(piece.first + k), cancellation, block, shard.rays);
       if (cancellation.cancelled()) return;
       tree.Append(0, block);
+      for (std::size_t c = 0; c < channels_; ++c) {
+        for (std::size_t r = 0; r < kReplicates; ++r) {
+          shard.ranges[(i * 2 + r / kHalfReplicates) * channels_ + c].Add(block[c * kReplicates + r]);
+        }
+      }
     }
     tree.Total(std::span(shard.nodes).subspan(i * width, width));
   }
@@ -143,6 +152,9 @@ bool PointBlocks::Merge(const std::vector<Shard>& shards) {
         sampler_.Doubts(piece.point, std::span(doubts_).subspan(piece.point * channels_, channels_));
       }
       trees_[piece.point].Append(piece.level, std::span(shard.nodes).subspan(i * width, width));
+      for (std::size_t k = 0; k < 2 * channels_; ++k) {
+        ranges_[piece.point * 2 * channels_ + k].Add(shard.ranges[i * 2 * channels_ + k]);
+      }
       total_blocks_ += std::ldexp(1.0, static_cast<int>(piece.level));
     }
   }

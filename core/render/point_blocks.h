@@ -2,9 +2,9 @@
 #ifndef FLATLIGHT_CORE_RENDER_POINT_BLOCKS_H_
 #define FLATLIGHT_CORE_RENDER_POINT_BLOCKS_H_
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/execution/cancellation.h"
@@ -12,7 +12,8 @@
 #include "core/execution/executor.h"
 #include "core/render/point_sampler.h"
 #include "core/statistics/block_tree.h"
-#include "core/statistics/crossed_halves.h"
+#include "core/statistics/replicates.h"
+#include "core/statistics/sample_range.h"
 
 namespace flatlight {
 
@@ -31,10 +32,20 @@ class PointBlocks {
   double total_blocks() const { return total_blocks_; }
   double rays() const { return rays_; }
 
-  // Estimates from all replicates of a point that has blocks, one a channel.
-  std::vector<MeanEstimate> Estimates(std::size_t point) const;
-  // The same for each half.
-  std::array<CrossedHalves::HalfEstimate, 2> HalfEstimates(std::size_t point) const;
+  // What is known of a point that has blocks beside its samples.
+  const PointSampler::Doubt& doubt(std::size_t point, std::size_t channel) const {
+    return doubts_[point * channels_ + channel];
+  }
+  // Of the samples of one half of the replicates.
+  const SampleRange& range(std::size_t point, std::size_t half, std::size_t channel) const {
+    return ranges_[(point * 2 + half) * channels_ + channel];
+  }
+
+  // Estimates from all replicates of a point that has blocks, one a channel. steps[c]: what one sample more may change
+  // (see EstimateMean).
+  std::vector<MeanEstimate> Estimates(std::size_t point, std::span<const double> steps) const;
+  // The same for one half.
+  std::vector<MeanEstimate> HalfEstimates(std::size_t point, std::size_t half, std::span<const double> steps) const;
 
   // What to bring each point up to: one number of blocks a point; points that are further stay.
   void SetGoals(std::vector<std::uint64_t> goals);
@@ -52,7 +63,8 @@ class PointBlocks {
   };
   struct Shard {
     std::vector<Piece> pieces;
-    std::vector<double> nodes;  // Sums, one node a piece.
+    std::vector<double> nodes;        // Sums, one node a piece.
+    std::vector<SampleRange> ranges;  // Piece, then half, then channel.
     double rays = 0;
     bool complete = false;
   };
@@ -66,7 +78,8 @@ class PointBlocks {
   void Work(Shard& shard, const Cancellation& cancellation) const;
   // True if everything was complete.
   bool Merge(const std::vector<Shard>& shards);
-  std::vector<MeanEstimate> EstimatesOf(std::size_t point, std::size_t first_replicate, std::size_t count) const;
+  std::vector<MeanEstimate> EstimatesOf(std::size_t point, std::size_t first_replicate, std::size_t count,
+                                        std::span<const double> steps) const;
 
   const PointSampler& sampler_;
   std::size_t channels_;
@@ -74,6 +87,7 @@ class PointBlocks {
   std::vector<std::uint64_t> goals_;
   std::size_t first_open_ = 0;               // No point before it is short of its goal.
   std::vector<PointSampler::Doubt> doubts_;  // Point, then channel.
+  std::vector<SampleRange> ranges_;          // Point, then half, then channel.
   double total_blocks_ = 0;
   double rays_ = 0;
   // How to cut work: measured, without influence on sums.

@@ -21,8 +21,9 @@ class PointSampler {
   virtual std::size_t channels() const = 0;
   // What all samples of a point may have in common without showing it.
   struct Doubt {
-    double step = 0;      // The largest change of one sample that stratification may hide (see EstimateMean).
-    double rounding = 0;  // Of a sample's arithmetic.
+    double step = 0;       // The largest change of one sample that stratification may hide (see EstimateMean).
+    double brightest = 0;  // What a rare sample may have above the common ones, about.
+    double rounding = 0;   // Of a sample's arithmetic.
   };
   // Of each channel.
   virtual void Doubts(std::size_t point, std::span<Doubt> doubts) const = 0;

@@ -15,6 +15,8 @@ using Seconds = std::chrono::duration<double>;
 constexpr std::uint64_t kFirstTestBlocks = 64 / PointSampler::kBlockSamples;
 // The dimmest that the target error is relative to, in means of the probe (DESIGN 3).
 constexpr double kDarkest = 0.01;
+// Bright samples are looked for at so many points on either side: they get light in much the same ways.
+constexpr std::size_t kNeighbours = 16;
 
 Clock::Time Later(Clock::Time time, Clock::Duration duration) {
   return duration > Clock::Time::max() - time ? Clock::Time::max() : time + duration;
@@ -67,7 +69,7 @@ void ProgressiveSampling::OfferHalves() {
   const std::size_t points = blocks_.points();
   if (pilot_means_[0].empty() && points > 0 && blocks_.blocks(0) >= kFirstTestBlocks) {
     for (const std::size_t half : {0, 1}) {
-      pilot_means_[half] = MeansOverProbes([&](std::size_t point) { return blocks_.HalfEstimates(point)[half]; });
+      pilot_means_[half] = MeansOverProbes([&](std::size_t point) { return HalfEstimates(point)[half]; });
     }
   }
   for (std::size_t point = 0; point < points; ++point) {
@@ -75,12 +77,13 @@ void ProgressiveSampling::OfferHalves() {
     std::array<CrossedHalves::Target, 2> targets;
     for (std::size_t half = 0; half < 2; ++half) {
       targets[half].relative = *goal_.target_error;
+      targets[half].brightest = Brightest(point, half, half + 1);
       for (std::size_t c = 0; c < channels(); ++c) {
         targets[half].floor.push_back(kDarkest * pilot_means_[half][probe_of_point_[point] * channels() + c]);
       }
     }
     const double samples = static_cast<double>(blocks_.blocks(point)) * PointSampler::kBlockSamples;
-    halves_[point].Offer(blocks_.HalfEstimates(point), samples, targets);
+    halves_[point].Offer(HalfEstimates(point), samples, targets);
   }
 }
 
@@ -182,6 +185,37 @@ ProgressiveSampling::ProbeMeans ProgressiveSampling::MeansOverProbes(const Value
   return means;
 }
 
+std::vector<double> ProgressiveSampling::Brightest(std::size_t point, std::size_t first_half,
+                                                   std::size_t last_half) const {
+  const std::size_t probe = probe_of_point_[point];
+  const std::size_t begin = std::max(probe == 0 ? 0 : probe_ends_[probe - 1], point - std::min(point, kNeighbours));
+  const std::size_t end = std::min(probe_ends_[probe], point + kNeighbours + 1);
+  std::vector<double> brightest(channels());
+  for (std::size_t c = 0; c < channels(); ++c) {
+    for (std::size_t p = begin; p < end; ++p) {
+      for (std::size_t half = first_half; half < last_half; ++half)
+        brightest[c] = std::max(brightest[c], blocks_.range(p, half, c).Width());
+    }
+    const PointSampler::Doubt& doubt = blocks_.doubt(point, c);
+    brightest[c] = std::max(brightest[c], doubt.brightest / std::sqrt(static_cast<double>(end - begin)));
+    brightest[c] = std::min(brightest[c], doubt.step + doubt.brightest);
+  }
+  return brightest;
+}
+
+std::vector<double> ProgressiveSampling::Steps(std::size_t point, std::vector<double> brightest) const {
+  for (std::size_t c = 0; c < channels(); ++c) brightest[c] = std::max(brightest[c], blocks_.doubt(point, c).step);
+  return brightest;
+}
+
+std::array<CrossedHalves::HalfEstimate, 2> ProgressiveSampling::HalfEstimates(std::size_t point) const {
+  std::array<CrossedHalves::HalfEstimate, 2> estimates;
+  for (const std::size_t half : {0, 1}) {
+    estimates[half] = blocks_.HalfEstimates(point, half, Steps(point, Brightest(point, half, half + 1)));
+  }
+  return estimates;
+}
+
 ProgressiveSampling::ProbeMeans ProgressiveSampling::CurrentMeans() const {
   return MeansOverProbes([this](std::size_t point) { return Value(point).estimates; });
 }
@@ -191,10 +225,10 @@ ProgressiveSampling::PointValue ProgressiveSampling::Value(std::size_t point) co
   value.samples = static_cast<double>(blocks_.blocks(point)) * PointSampler::kBlockSamples;
   if (value.samples == 0) return value;
   if (halves_.empty()) {
-    value.estimates = blocks_.Estimates(point);
+    value.estimates = blocks_.Estimates(point, Steps(point, Brightest(point, 0, 2)));
     return value;
   }
-  const auto halves = blocks_.HalfEstimates(point);
+  const auto halves = HalfEstimates(point);
   for (std::size_t c = 0; c < channels(); ++c) value.estimates.push_back(halves_[point].Estimate(halves, c));
   value.samples = halves_[point].Samples(value.samples);
   return value;

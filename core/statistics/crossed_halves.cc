@@ -11,8 +11,9 @@ bool GoodEnough(const CrossedHalves::HalfEstimate& estimates, double samples, co
   for (std::size_t c = 0; c < estimates.size(); ++c) dark = dark && estimates[c].mean == 0 && target.floor[c] == 0;
   if (dark) return samples >= CrossedHalves::kSamplesBeforeDarkness;
   for (std::size_t c = 0; c < estimates.size(); ++c) {
-    const double error = estimates[c].StandardError();
-    if (!(error <= target.relative * std::max(estimates[c].mean, target.floor[c]))) return false;
+    const double allowed = target.relative * std::max(estimates[c].mean, target.floor[c]);
+    if (!(estimates[c].StandardError() <= CrossedHalves::kHalfError * allowed)) return false;
+    if (!(CrossedHalves::kBrightestInTarget * target.brightest[c] <= samples * allowed)) return false;
   }
   return true;
 }

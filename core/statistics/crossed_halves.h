@@ -18,16 +18,25 @@ namespace flatlight {
 // Both halves are offered at the same counts. A half that is decided keeps the value it had then.
 class CrossedHalves {
  public:
-  // What error is small enough: standard error <= relative * max(mean, floor of the channel).
+  // What error is small enough: standard error <= relative * max(mean, floor of the channel), and no single sample that
+  // is as bright as `brightest` would move the mean by more than a fraction of that.
   struct Target {
     double relative = 0;
-    std::vector<double> floor;  // One a channel.
+    std::vector<double> floor;      // One a channel.
+    std::vector<double> brightest;  // One a channel.
   };
   using HalfEstimate = std::vector<MeanEstimate>;  // One a channel.
 
   // Where a whole probe is dark so far, no error is small beside it, and nothing is known of how rare bright samples
   // are: the point is given up for dark after this number of samples.
   static constexpr double kSamplesBeforeDarkness = 4096;
+  // The error of a half that is good enough, in target errors. The average of two such halves has 1/sqrt(2) of it: what
+  // is left is to spare, so that few points miss the target in the end.
+  static constexpr double kHalfError = 1.25;
+  // So many of the brightest samples, found or missed, make up the target error. With fewer the error would be judged by
+  // a handful of them. (Measured: at 4 errors have the right size where at 0 the doubt in EstimateMean alone makes them
+  // too large by a quarter; and for the same samples there is less error, as points go on that need it.)
+  static constexpr double kBrightestInTarget = 4;
 
   // Offers both halves after `samples` samples of the whole point. targets[h] judges half h, and may depend on data of
   // that half only.

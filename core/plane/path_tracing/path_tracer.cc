@@ -66,6 +66,19 @@ Spectrum PathTracer::DirectStep(const Receiver& receiver, const Sight& sight) co
   return options_.nothing_blocks ? Spectrum{} : emitters_.Unblocked(VertexAt(scene_, receiver), sight);
 }
 
+Spectrum PathTracer::BrightestReflection() const {
+  Spectrum bright;
+  if (options_.max_bounces == 0u || emitters_.empty()) return bright;
+  Spectrum reflectance;
+  for (const Curve& curve : scene_.curves()) {
+    for (int c = 0; c < kMaxChannels; ++c) {
+      bright[c] = std::max(bright[c], 2 * curve.radiance[c]);
+      reflectance[c] = std::max(reflectance[c], curve.reflectance[c]);
+    }
+  }
+  return bright * reflectance;
+}
+
 Spectrum PathTracer::DirectRounding(const Receiver& receiver, const Sight& sight) const {
   return emitters_.Rounding(VertexAt(scene_, receiver), sight);
 }

@@ -101,31 +101,77 @@ TEST(HonestRenderingTest, TargetErrorIsMetWithoutBias) {
   EXPECT_TRUE(errors.Unbiased()) << errors.MeanZ();
 }
 
-// Rare and bright: only paths through a slit reach the lit chamber. The mean over many seeds is the truth, as a long
-// rendering knows it.
-TEST(HonestRenderingTest, StoppingAtATargetDoesNotBiasRareBrightLight) {
+// Two chambers; only paths through a slit between them reach the lit one from the other.
+SceneMaker Keyhole() {
   SceneMaker maker;
-  maker.Polyline("chambers", {{0, 0}, {4, 0}, {4, 1}, {0, 1}}, true, {.reflectance = {0.7}});
+  maker.Segment("floor", {0, 0}, {4, 0}, {.reflectance = {0.7}});
+  maker.Polyline("walls", {{4, 0}, {4, 1}, {0, 1}, {0, 0}}, false, {.reflectance = {0.7}});
   maker.Segment("lower wall", {2, 0}, {2, 0.46}, {.reflectance = {0.3}});
   maker.Segment("upper wall", {2, 0.54}, {2, 1}, {.reflectance = {0.3}});
   maker.Segment("lamp", {3.9, 0.9}, {3.7, 0.9}, {.radiance = {50}});
-  maker.PointProbe({0.7, 0.05}, {0, 1});
-  const auto scene = maker.Build();
+  return maker;
+}
+
+// Rare and bright. The mean over many seeds is the truth, as a long rendering knows it, and stated errors have the
+// right size.
+TEST(HonestRenderingTest, StoppingAtATargetDoesNotBiasRareBrightLight) {
+  const auto scene = Keyhole().PointProbe({0.7, 0.05}, {0, 1}).Build();
   const Ended truth = Render(scene, Sampled(1 << 17, 1000));
+  const double mean = truth.field->probes[0].irradiance[0];
+  const double doubt = truth.field->probes[0].standard_error[0];
   double sum = 0;
   double squares = 0;
-  constexpr int kRuns = 100;
-  const double mean = truth.field->probes[0].irradiance[0];
+  HonestErrors errors;
+  constexpr int kRuns = 200;
   for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
     Settings settings;
     settings.seed = seed;
     settings.target_error = 0.3;
-    const double difference = Render(scene, settings).field->probes[0].irradiance[0] - mean;
+    const ProbeField field = Render(scene, settings).field->probes[0];
+    const double difference = field.irradiance[0] - mean;
     sum += difference;
     squares += difference * difference;
+    errors.Add(field.irradiance[0], mean, std::hypot(field.standard_error[0], doubt));
   }
-  const double variance = squares + kRuns * kRuns * std::pow(truth.field->probes[0].standard_error[0], 2);
+  const double variance = squares + kRuns * kRuns * doubt * doubt;
   EXPECT_LT(std::abs(sum), 5 * std::sqrt(variance)) << sum / kRuns << " of " << mean;
+  EXPECT_TRUE(errors.RightSize()) << errors.MeanSquareZ();
+}
+
+// The same along a floor that runs through both chambers: 16 points, 30 seeds.
+TEST(HonestRenderingTest, StatedErrorsTellTheTruthThroughAKeyhole) {
+  const auto scene = Keyhole().Probe("floor", 16).Build();
+  const ProbeField truth = Render(scene, Sampled(1 << 15, 1000)).field->probes[0];
+  HonestErrors errors;
+  for (std::uint32_t seed = 0; seed < 30; ++seed) {
+    Settings settings;
+    settings.seed = seed;
+    settings.target_error = 0.2;
+    const ProbeField field = Render(scene, settings).field->probes[0];
+    for (std::size_t i = 0; i < field.irradiance.size(); ++i) {
+      errors.Add(field.irradiance[i], truth.irradiance[i],
+                 std::hypot(field.standard_error[i], truth.standard_error[i]));
+    }
+  }
+  EXPECT_TRUE(errors.RightSize()) << errors.MeanSquareZ();
+}
+
+// Where paths seldom find the only curve that reflects, few samples say nothing of what it gives: fixed counts, of
+// which most find nothing. Their errors may be stated too large, not too small.
+TEST(HonestRenderingTest, LightThatNoSampleFoundIsInTheError) {
+  SceneMaker maker;
+  maker.Segment("floor", {0, 0}, {1, 0}, {.reflectance = {0.5}});
+  maker.Segment("lamp", {1, 1}, {0, 1}, {.radiance = {2}});
+  maker.Segment("mirror", {3, 0}, {3, 0.3}, {.reflectance = {0.9}});
+  maker.PointProbe({0.2, 0}, {0, 1});
+  const auto scene = maker.Build();
+  const ProbeField truth = Render(scene, Sampled(1 << 16, 1000)).field->probes[0];
+  HonestErrors errors;
+  for (std::uint32_t seed = 0; seed < 300; ++seed) {
+    const ProbeField field = Render(scene, Sampled(32, seed)).field->probes[0];
+    errors.Add(field.irradiance[0], truth.irradiance[0], std::hypot(field.standard_error[0], truth.standard_error[0]));
+  }
+  EXPECT_LT(errors.MeanSquareZ(), 1);
 }
 
 // A free point exactly where two pieces of floor meet, whose directions agree to 1e-8: rays must leave both of them.

@@ -21,7 +21,7 @@ Stopped Sample(std::uint64_t seed, double p, double target) {
   std::mt19937_64 random(seed);
   std::array<double, kReplicates> sums{};
   std::array<CrossedHalves::Target, 2> targets;
-  for (auto& t : targets) t = {target, {1.0}};  // Floor 1: an absolute target.
+  for (auto& t : targets) t = {target, {1.0}, {0.0}};  // Floor 1: an absolute target.
   CrossedHalves crossed;
   Stopped stopped;
   bool own_stopped = false;
@@ -76,8 +76,8 @@ CrossedHalves::HalfEstimate HalfOf(double mean, double standard_error) {
 constexpr std::size_t kFirst = 0;
 
 TEST(CrossedHalvesTest, EachHalfIsDecidedByTheOther) {
-  const std::array<CrossedHalves::Target, 2> targets = {CrossedHalves::Target{0.1, {0}},
-                                                        CrossedHalves::Target{0.1, {0}}};
+  const std::array<CrossedHalves::Target, 2> targets = {CrossedHalves::Target{0.1, {0}, {0}},
+                                                        CrossedHalves::Target{0.1, {0}, {0}}};
   CrossedHalves crossed;
   // The second half looks good: it decides the first, whose value is kept.
   crossed.Offer({HalfOf(1, 0.5), HalfOf(2, 0.01)}, 64, targets);
@@ -94,16 +94,16 @@ TEST(CrossedHalvesTest, EachHalfIsDecidedByTheOther) {
 }
 
 TEST(CrossedHalvesTest, FloorAppliesToDarkValues) {
-  const std::array<CrossedHalves::Target, 2> targets = {CrossedHalves::Target{0.1, {1}},
-                                                        CrossedHalves::Target{0.1, {1}}};
+  const std::array<CrossedHalves::Target, 2> targets = {CrossedHalves::Target{0.1, {1}, {0}},
+                                                        CrossedHalves::Target{0.1, {1}, {0}}};
   CrossedHalves crossed;
   crossed.Offer({HalfOf(0.01, 0.09), HalfOf(0.01, 0.09)}, 64, targets);
   EXPECT_TRUE(crossed.decided());
 }
 
 TEST(CrossedHalvesTest, DarknessNeedsManySamples) {
-  const std::array<CrossedHalves::Target, 2> targets = {CrossedHalves::Target{0.1, {0}},
-                                                        CrossedHalves::Target{0.1, {0}}};
+  const std::array<CrossedHalves::Target, 2> targets = {CrossedHalves::Target{0.1, {0}, {0}},
+                                                        CrossedHalves::Target{0.1, {0}, {0}}};
   CrossedHalves crossed;
   crossed.Offer({HalfOf(0, 0), HalfOf(0, 0)}, CrossedHalves::kSamplesBeforeDarkness / 2, targets);
   EXPECT_FALSE(crossed.decided());
