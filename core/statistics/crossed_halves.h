@@ -33,9 +33,9 @@ class CrossedHalves {
   // The error of a half that is good enough, in target errors. The average of two such halves has 1/sqrt(2) of it: what
   // is left is to spare, so that few points miss the target in the end.
   static constexpr double kHalfError = 1.25;
-  // So many of the brightest samples, found or missed, make up the target error. With fewer the error would be judged by
-  // a handful of them. (Measured: at 4 errors have the right size where at 0 the doubt in EstimateMean alone makes them
-  // too large by a quarter; and for the same samples there is less error, as points go on that need it.)
+  // So many of the brightest samples, found or missed, make up the target error. With fewer the error would be judged
+  // by a handful of them. (Measured: at 4 errors have the right size where at 0 the doubt in EstimateMean alone makes
+  // them too large by a quarter; and for the same samples there is less error, as points go on that need it.)
   static constexpr double kBrightestInTarget = 4;
 
   // Offers both halves after `samples` samples of the whole point. targets[h] judges half h, and may depend on data of

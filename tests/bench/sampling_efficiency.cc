@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much a path is worth: 1 / (variance x processor time) and 1 / (variance x rays) of path tracing, scene by scene.
+//
+//   sampling_efficiency [CSV [SCENE]]      the rows go to CSV (default: sampling_efficiency.csv) as well; with SCENE,
+//                                          only scenes whose name has it in it
+//
+// The variance is the mean square of (value - truth) / truth over the points of a scene and over seeds, for one path a
+// point: measured at 256 paths and scaled. Truth is exact for direct light, else a long rendering, whose own error is
+// taken off. Efficiencies are per second, and per ray: twice as much means the same error in half the time. To compare
+// two versions, run both by turns: the variances are the same each time, the times are medians.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "core/execution/cancellation.h"
+#include "core/execution/clock.h"
+#include "core/execution/executor.h"
+#include "core/execution/thread_pool.h"
+#include "core/render/plan.h"
+#include "core/render/rendering.h"
+#include "tests/bench/bench_report.h"
+#include "tests/bench/named_scenes.h"
+#include "tests/bench/random_scenes.h"
+
+namespace flatlight {
+namespace {
+
+constexpr std::uint32_t kPoints = 16;
+constexpr std::uint32_t kSamples = 256;
+constexpr std::uint32_t kTruthSamples = 1 << 16;
+constexpr std::uint32_t kTruthSeed = 1'000'000;
+constexpr std::uint32_t kSeeds = 24;
+
+std::shared_ptr<const Field> Render(const std::shared_ptr<const Scene>& scene, const Settings& settings,
+                                    Executor& executor) {
+  Diagnostics diagnostics;
+  const std::optional<Plan> plan = MakePlan(*scene, settings, diagnostics);
+  if (!plan) std::exit(2);
+  const Cancellation never;
+  const SteadyClock clock;
+  const std::unique_ptr<Rendering> rendering = StartRendering(scene, *plan);
+  while (!rendering->done()) rendering->Advance(executor, never, clock, std::chrono::hours(1));
+  return rendering->Snapshot();
+}
+
+struct Case {
+  NamedScene scene;
+  bool direct = false;
+};
+
+void Measure(const Case& c, BenchTable& table) {
+  Settings settings;
+  ThreadPool pool(ThreadPool::AvailableProcessors());
+  if (c.direct) {
+    settings.method = Method::kExact;
+    settings.max_bounces = 0;
+  } else {
+    settings.method = Method::kPathTracing;
+    settings.samples = kTruthSamples;
+    settings.seed = kTruthSeed;
+  }
+  const std::shared_ptr<const Field> truth = Render(c.scene.scene, settings, pool);
+  settings.method = Method::kPathTracing;
+  settings.samples = kSamples;
+  InlineExecutor executor;
+  std::vector<double> seconds;
+  double squares = 0, stated = 0, values = 0, rays = 0, doubt = 0;
+  for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+    settings.seed = seed;
+    const double start = ThreadSeconds();
+    const std::shared_ptr<const Field> field = Render(c.scene.scene, settings, executor);
+    seconds.push_back(ThreadSeconds() - start);
+    rays += field->rays;
+    for (std::size_t p = 0; p < field->probes.size(); ++p) {
+      const ProbeField& a = field->probes[p];
+      const ProbeField& b = truth->probes[p];
+      double mean = 0;
+      for (const double e : b.irradiance) mean += e / static_cast<double>(b.irradiance.size());
+      for (std::size_t i = 0; i < a.irradiance.size(); ++i) {
+        const double scale = std::max(b.irradiance[i], 0.01 * mean);
+        if (!(scale > 0)) continue;
+        const double error = (a.irradiance[i] - b.irradiance[i]) / scale;
+        squares += error * error;
+        stated += std::pow(a.standard_error[i] / scale, 2);
+        if (!b.standard_error.empty()) doubt += std::pow(b.standard_error[i] / scale, 2);
+        ++values;
+      }
+    }
+  }
+  const double variance = std::max(squares - doubt, 0.0) / values * kSamples;
+  const double paths = kSamples * static_cast<double>(c.scene.scene->traits().probe_points);
+  const double time = QuartilesOf(seconds).median / paths;
+  const double rays_per_path = rays / kSeeds / paths;
+  table.Add({c.scene.name, c.direct ? "direct" : "all", Short(variance), Short(1e9 * time), Short(rays_per_path),
+             Short(1 / (variance * time)), Short(1 / (variance * rays_per_path)), Short(squares / stated)});
+}
+
+int Run(const std::string& csv, const std::string& only) {
+  std::vector<NamedScene> scenes = GalleryScenes(kPoints);
+  scenes.push_back({"row of 4 rooms", RowOfRooms(4, kPoints)});
+  scenes.push_back({"half black room", HalfBlackRoom(kPoints)});
+  scenes.push_back({"12 lamps", ManyLamps(12, 0.5, kPoints)});
+  scenes.push_back({"100 lamps", ManyLamps(100, 0.5, kPoints)});
+  scenes.push_back({"10,000 lamps", ManyLamps(10'000, 0.5, kPoints)});
+  scenes.push_back({"row of 40 rooms", RowOfRooms(40, kPoints)});
+  scenes.push_back({"city of 20 houses", City(20, 0.5, kPoints)});
+  scenes.push_back({"1000 segments", BuiltRandomSegments(1000, 0.5, kPoints)});
+  BenchTable table({"scene", "light", "variance", "ns a path", "rays a path", "per second", "per ray", "z^2"});
+  for (const NamedScene& scene : scenes) {
+    if (scene.name.find(only) == std::string::npos) continue;
+    Measure({scene, true}, table);
+    if (scene.scene->traits().max_reflectance > 0) Measure({scene, false}, table);
+  }
+  table.Print();
+  if (table.WriteCsv(csv)) return 0;
+  std::fprintf(stderr, "%s could not be written\n", csv.c_str());
+  return 1;
+}
+
+}  // namespace
+}  // namespace flatlight
+
+int main(int argc, char** argv) {
+  return flatlight::Run(argc > 1 ? argv[1] : "sampling_efficiency.csv", argc > 2 ? argv[2] : "");
+}
