@@ -3,6 +3,7 @@
 #ifndef FLATLIGHT_TESTS_BENCH_STRESS_KNOWN_LIMITS_H_
 #define FLATLIGHT_TESTS_BENCH_STRESS_KNOWN_LIMITS_H_
 
+#include <algorithm>
 #include <string>
 
 namespace flatlight::stress {
@@ -10,48 +11,67 @@ namespace flatlight::stress {
 struct KnownLimit {
   const char* family;
   const char* check;
-  double share;  // Of the scenes; some 3 times what a long campaign finds.
+  double share;  // Of the scenes: some twice what a long campaign finds.
   const char* reason;
 };
 
-// Nearly all of the closed form of direct light (core/plane/exact).
+// All of the closed form of direct light (core/plane/exact), but for walls nearer than the touch distance.
 inline constexpr KnownLimit kKnownLimits[] = {
     {"tangents", "rays", 0.6, "a circle that touches the receiver is on neither side of it"},
     {"tangents", "sampling", 0.6, "a circle that touches the receiver is on neither side of it"},
-    {"tangents", "similarity", 0.05, "a circle that touches the receiver is on neither side of it"},
-    {"tangents", "order", 0.05, "a circle that touches the receiver is on neither side of it"},
+    {"tangents", "similarity", 0.03, "a circle that touches the receiver is on neither side of it"},
+    {"tangents", "order", 0.02, "a circle that touches the receiver is on neither side of it"},
     {"tangents", "oracle", 0.7,
      "where circles touch, the place of their crossing is known to few digits: no bound says so"},
-    {"slivers", "oracle", 0.4,
+    {"slivers", "oracle", 0.3,
      "where walls cross at a small angle, the place is known to few digits: no bound says so"},
-    {"slivers", "rays", 0.02, "crossings at angles of 1e-7 are missed"},
-    {"arcs", "rays", 0.03, "breaks beside the horizon of a receiver on a short arc"},
-    {"arcs", "finite", 0.01, "breaks beside the horizon of a receiver on a short arc"},
-    {"arcs", "order", 0.01, "circles that touch, to rounding"},
-    {"arcs", "sampling", 0.02, "breaks beside the horizon of a receiver on a short arc"},
-    {"cluster", "rays", 0.03, "circles of 1e-9 that cross; sines of a far and a very near end cancel"},
-    {"cluster", "similarity", 0.02, "circles of 1e-9 that cross"},
-    {"fan", "rays", 0.01, "a receiver where two curves cross, facing along one of them"},
-    {"fan", "similarity", 0.01, "sines of a far and a very near end cancel"},
-    {"corners", "rays", 0.01, "a receiver 1e-9 from a wall's end"},
-    {"corners", "similarity", 0.03, "walls nearer than the touch distance: which is there depends on the place"},
-    {"grid", "rays", 0.01, "sines of a far and a very near end cancel"},
-    {"grid arcs", "rays", 0.02, "an arc that ends on the receiver; the part of a circle that an arc leaves out"},
-    {"grid arcs", "sampling", 0.05, "an arc that ends on the receiver"},
-    {"grid arcs", "finite", 0.01, "a bound below 0 where an arc passes through the receiver"},
-    {"grid arcs", "grid moves", 0.01, "sines of a far and a very near end cancel"},
-    {"closed arcs", "similarity", 0.01, "walls that meet to rounding leave slits"},
-    {"slivers", "similarity", 0.01, "crossings at small angles"},
-    {"slivers", "reversal", 0.01, "crossings at small angles"},
-    {"grazing", "similarity", 0.04, "a lamp in line with the receiver fills its horizon; light at 1e-6 rad is lost"},
-    {"junctions", "similarity", 0.03, "light at 1e-6 rad is lost"},
-    {"overlaps", "similarity", 0.04, "a lamp in line with the receiver fills its horizon"},
+    {"slivers", "rays", 0.005, "crossings at angles of 1e-7 are missed"},
+    {"slivers", "similarity", 0.005, "crossings at small angles"},
+    {"slivers", "reversal", 0.002, "crossings at small angles"},
+    {"nested", "oracle", 0.02,
+     "where walls cross at a small angle, the place is known to few digits: no bound says so"},
+    {"arcs", "rays", 0.015, "breaks beside the horizon of a receiver on a short arc"},
+    {"arcs", "finite", 0.001, "breaks beside the horizon of a receiver on a short arc"},
+    {"arcs", "sampling", 0.005, "breaks beside the horizon of a receiver on a short arc"},
+    {"arcs", "order", 0.005, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"arcs", "oracle", 0.02, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"cluster", "rays", 0.05, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"cluster", "similarity", 0.05, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"cluster", "order", 0.03, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"cluster", "reversal", 0.005, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"cluster", "oracle", 0.05, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"sizes", "rays", 0.005, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"sizes", "similarity", 0.004, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"sizes", "order", 0.002, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"sizes", "reversal", 0.001, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"fan", "rays", 0.003, "a receiver where two curves cross, facing along one of them"},
+    {"fan", "order", 0.001, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"fan", "similarity", 0.003, "sines of a far and a very near end cancel"},
+    {"corners", "rays", 0.001, "a receiver 1e-9 from a wall's end"},
+    {"corners", "similarity", 0.02, "walls nearer than the touch distance: which is there depends on the place"},
+    {"grid", "rays", 0.002, "sines of a far and a very near end cancel"},
+    {"grid", "similarity", 0.001, "a lamp or wall in line with the receiver fills its horizon"},
+    {"grid arcs", "rays", 0.006, "an arc that ends on the receiver; the part of a circle that an arc leaves out"},
+    {"grid arcs", "sampling", 0.02, "an arc that ends on the receiver"},
+    {"grid arcs", "finite", 0.001, "a bound below 0 where an arc passes through the receiver"},
+    {"grid arcs", "grid moves", 0.002, "sines of a far and a very near end cancel"},
+    {"grid arcs", "similarity", 0.004, "an arc that ends on the receiver"},
+    {"closed arcs", "similarity", 0.015, "walls that meet to rounding leave slits"},
+    {"closed arcs", "oracle", 0.02, "walls that meet to rounding leave slits"},
+    {"grazing", "similarity", 0.004, "a lamp in line with the receiver fills its horizon; light at 1e-6 rad is lost"},
+    {"grazing", "rays", 0.001, "light at 1e-6 rad is lost"},
+    {"junctions", "similarity", 0.005, "light at 1e-6 rad is lost"},
+    {"overlaps", "similarity", 0.015, "a lamp or wall in line with the receiver fills its horizon"},
+    {"one line", "reversal", 0.04, "a lamp or wall in line with the receiver fills its horizon"},
+    {"one line", "sampling", 0.2, "a lamp or wall in line with the receiver fills its horizon"},
 };
 
-inline double KnownShare(const std::string& family, const std::string& check) {
-  for (const KnownLimit& limit : kKnownLimits)
-    if (limit.family == family && limit.check == check) return limit.share;
-  return 0;
+// Whether so many failures are no news. One of a kind that is known never is.
+inline bool IsKnown(const std::string& family, const std::string& check, double failures, double scenes) {
+  for (const KnownLimit& limit : kKnownLimits) {
+    if (limit.family == family && limit.check == check) return failures <= std::max(1.0, limit.share * scenes);
+  }
+  return failures == 0;
 }
 
 }  // namespace flatlight::stress

@@ -217,8 +217,8 @@ int Main(int argc, char** argv) {
   bool news = failed;
   for (const auto& [key, line] : result.lines) {
     if (line.failures == 0) continue;
-    const double share = KnownShare(key.first, key.second);
-    const bool known = static_cast<double>(line.failures) <= share * static_cast<double>(line.scenes);
+    const bool known =
+        IsKnown(key.first, key.second, static_cast<double>(line.failures), static_cast<double>(line.scenes));
     std::printf("%-8s %s on %s: %llu of %llu scenes\n", known ? "known" : "NEWS", key.second.c_str(), key.first.c_str(),
                 static_cast<unsigned long long>(line.failures), static_cast<unsigned long long>(line.scenes));
     news = news || !known;
