@@ -12,7 +12,7 @@ namespace {
 // Rays take a piece for hit up to one touch distance away; beyond that this is far above rounding.
 constexpr double kMarginTouches = 4;
 // A point that touches another curve is looked at from beside it: what hides it hides the places nearby too.
-constexpr double kHidingTouches = 2 * kOnwardTouches;
+constexpr double kHidingMargin = 2 * kFarthestOnward;
 // So many pieces in the way are enough to give up.
 constexpr int kMostInTheWay = 16;
 // Far above the rounding of a squared distance.
@@ -179,7 +179,6 @@ Passage PassageBetween(const Scene& scene, const Bvh& bvh, const Corners& from, 
   const Polygon shaft(from, to);
   if (shaft.IsFlat() || bvh.nodes().empty()) return Passage::kUncertain;
   const double margin = kMarginTouches * scene.touch_distance();
-  const double hiding_margin = kHidingTouches * scene.touch_distance();
   int in_the_way = 0;
   struct Entry {
     std::uint32_t node;
@@ -210,7 +209,7 @@ Passage PassageBetween(const Scene& scene, const Bvh& bvh, const Corners& from, 
       if (slot.carrier == own.from || slot.carrier == own.to) continue;
       const Element& element = scene.elements()[slot.element];
       if (shaft.Misses(CornersOf(element), margin)) continue;
-      if (element.kind == Element::Kind::kSegment && Hides(element, from, to, hiding_margin)) return Passage::kHidden;
+      if (element.kind == Element::Kind::kSegment && Hides(element, from, to, kHidingMargin)) return Passage::kHidden;
       if (++in_the_way == kMostInTheWay) return Passage::kUncertain;
     }
   }

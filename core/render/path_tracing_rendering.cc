@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/math/tolerances.h"
+#include "core/plane/path_tracing/emitter_reach.h"
 #include "core/plane/path_tracing/path_tracer.h"
 #include "core/plane/ray_caster.h"
 #include "core/render/light_paths.h"
@@ -46,7 +47,7 @@ class PathSampler final : public PointSampler {
   std::size_t channels() const override { return static_cast<std::size_t>(tracer_.channels()); }
 
   void Doubts(std::size_t point, std::span<Doubt> doubts) const override {
-    const Sight sight = SightFrom(point);
+    const EmitterSight sight = SightFrom(point);
     const Spectrum step = tracer_.DirectStep(points_[point], sight);
     const Spectrum bright = tracer_.BrightestReflection();
     const Spectrum rounding = tracer_.DirectRounding(points_[point], sight);
@@ -66,7 +67,7 @@ class PathSampler final : public PointSampler {
   }
 
  private:
-  Sight SightFrom(std::size_t point) const {
+  EmitterSight SightFrom(std::size_t point) const {
     return sights_.At(point, [&] { return tracer_.SightFrom(points_[point]); });
   }
 
@@ -74,7 +75,7 @@ class PathSampler final : public PointSampler {
   std::shared_ptr<const RayCaster> caster_;
   std::vector<Receiver> points_;
   PathTracer tracer_;
-  SightMemory sights_;  // By point.
+  EmitterSightMemory sights_;  // By point.
   std::uint32_t seed_;
 };
 
@@ -96,7 +97,11 @@ std::unique_ptr<const PointSampler> MakeSampler(std::shared_ptr<const Scene> sce
   options.leave_out_shadow_rays = plan.Takes(skip::kVisibility);
   options.nothing_blocks = NothingBlocks(*scene);
   options.end_black_paths = plan.Takes(skip::kBlackPaths);
-  options.drop_unseen_emitters = plan.Takes(skip::kUnseenEmitters);
+  if (plan.Takes(skip::kUnseenEmitters)) {
+    const bool direct = DirectLightOnly(*scene, plan.settings);
+    for (const EmitterReach::Piece& piece : ReachOfEmitters(*scene).pieces)
+      if (!EmitterReach::Counts(piece, direct)) options.unseen_emitters.push_back(piece.id);
+  }
   return std::make_unique<PathSampler>(std::move(scene), std::move(caster), options, plan.settings.seed.value_or(0));
 }
 

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <utility>
 
-#include "core/plane/bvh.h"
 #include "core/plane/path_tracing/emitter_reach.h"
 #include "core/plane/path_tracing/emitter_sampler.h"
 #include "core/render/light_paths.h"
@@ -22,16 +20,14 @@ bool IsGiven(const Settings& settings, const char* name) {
 // What shapes tell of who lights what.
 struct LightWays {
   LightWays(const Scene& scene, bool direct) {
-    std::optional<Bvh> bvh;
-    if (scene.traits().emitting_curves > 0 && ReachNeedsTree(scene)) bvh.emplace(scene);
-    const EmitterReach reach = ReachOfEmitters(scene, bvh ? &*bvh : nullptr);
+    const EmitterReach reach = ReachOfEmitters(scene);
     unlit_reflectors = scene.traits().max_reflectance > 0 && !reach.LightsReflectors();
     weighed = reach.pieces.size() <= EmitterSampler::kMostWeighed;
     if (!weighed) return;
     known = reach.ways;
     clear = reach.clear_ways;
     for (const EmitterReach::Piece& piece : reach.pieces) {
-      unseen += piece.lights_points || (!direct && piece.lights_reflectors) ? 0 : 1;
+      unseen += EmitterReach::Counts(piece, direct) ? 0 : 1;
     }
   }
 

@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "core/math/tolerances.h"
+#include "core/plane/bvh.h"
+#include "core/plane/path_tracing/emitter_sampler.h"
 #include "core/plane/shaft.h"
 #include "core/scene/element_frame.h"
 
@@ -17,6 +19,8 @@ constexpr std::size_t kMostPairs = 20'000;
 constexpr std::size_t kMostPassages = 400;
 // A tree of so many is built in a fraction of a millisecond.
 constexpr std::size_t kMostElementsInTree = 512;
+// With more emitters than are weighed one by one nobody asks which of them are hidden.
+constexpr std::size_t kMostPiecesInTree = EmitterSampler::kMostWeighed;
 // Of a probe of free points; others are looked at as one box.
 constexpr std::size_t kMostSinglePoints = 32;
 
@@ -63,7 +67,7 @@ class Looker {
     const bool straight = emitter.kind == Element::Kind::kSegment;
     if (place.element != nullptr && place.element->carrier == emitter.carrier && straight) return false;
     // Far above rounding, and above what a point that touches another curve is moved by.
-    const double doubt = 2 * kOnwardTouches * scene_.touch_distance();
+    constexpr double doubt = 2 * kFarthestOnward;
     if (straight && !two_sided) {
       const Vector2 along = emitter.b - emitter.a;
       if (!AnyOf(place.corners, [&](Point2 p) { return Cross(along, p - emitter.a) > -doubt * emitter.length; }))
@@ -133,16 +137,19 @@ bool EmitterReach::LightsReflectors() const {
   return std::any_of(pieces.begin(), pieces.end(), [](const Piece& piece) { return piece.lights_reflectors; });
 }
 
-bool ReachNeedsTree(const Scene& scene) { return scene.elements().size() <= kMostElementsInTree; }
-
-EmitterReach ReachOfEmitters(const Scene& scene, const Bvh* bvh) {
+EmitterReach ReachOfEmitters(const Scene& scene) {
   EmitterReach reach;
   for (const Curve& curve : scene.curves()) {
     if (!curve.Emits()) continue;
     for (std::uint32_t e = curve.first_element; e < curve.first_element + curve.element_count; ++e)
       reach.pieces.push_back({static_cast<ElementId>(e), false, false});
   }
-  Looker looker(scene, bvh, reach);
+  std::optional<Bvh> bvh;
+  if (!reach.pieces.empty() && reach.pieces.size() <= kMostPiecesInTree &&
+      scene.elements().size() <= kMostElementsInTree) {
+    bvh.emplace(scene);
+  }
+  Looker looker(scene, bvh ? &*bvh : nullptr, reach);
   for (const Probe& probe : scene.probes()) {
     if (!LookFromProbe(scene, probe, looker)) return reach;
   }

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/plane/bvh.h"
 #include "core/scene/scene.h"
 
 namespace flatlight {
@@ -25,15 +24,16 @@ struct EmitterReach {
   std::size_t clear_ways = 0;
 
   bool LightsReflectors() const;
+  // Whether light of a piece counts. `direct`: none is reflected.
+  static bool Counts(const Piece& piece, bool direct) {
+    return piece.lights_points || (!direct && piece.lights_reflectors);
+  }
 };
 
 // Takes time in proportion to the number of elements at most, and well under a millisecond in addition: what has not
-// been looked at by then counts as lit. `bvh` may be null, in a scene too large to build one for this; then nothing is
-// known to hide anything.
-EmitterReach ReachOfEmitters(const Scene& scene, const Bvh* bvh);
-
-// Whether a tree is worth its cost for this.
-bool ReachNeedsTree(const Scene& scene);
+// been looked at by then counts as lit. In a scene too large to build a tree for this nothing is known to hide
+// anything.
+EmitterReach ReachOfEmitters(const Scene& scene);
 
 }  // namespace flatlight
 

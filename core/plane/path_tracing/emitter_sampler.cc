@@ -37,7 +37,7 @@ EmitterSampler::EmitterSampler(std::shared_ptr<const Scene> scene, const std::ve
   }
 }
 
-Spectrum EmitterSampler::Unblocked(const Vertex& vertex, const Sight& sight) const {
+Spectrum EmitterSampler::Unblocked(const Vertex& vertex, const EmitterSight& sight) const {
   const std::size_t stride = pieces_.size() / kMostSummed + 1;
   Spectrum sum;
   Spectrum brightest;
@@ -54,7 +54,7 @@ Spectrum EmitterSampler::Unblocked(const Vertex& vertex, const Sight& sight) con
   return sum;
 }
 
-Spectrum EmitterSampler::Rounding(const Vertex& vertex, const Sight& sight) const {
+Spectrum EmitterSampler::Rounding(const Vertex& vertex, const EmitterSight& sight) const {
   // Each end is seen in a direction known to the coordinates' error over its distance (as for exact light, edge.cc).
   Spectrum sum;
   const std::size_t stride = pieces_.size() / kMostSummed + 1;
@@ -69,7 +69,7 @@ Spectrum EmitterSampler::Rounding(const Vertex& vertex, const Sight& sight) cons
   return sum;
 }
 
-EmitterSampler::View::View(const EmitterSampler& sampler, const Vertex& vertex, const Sight& sight)
+EmitterSampler::View::View(const EmitterSampler& sampler, const Vertex& vertex, const EmitterSight& sight)
     : sampler_(sampler), vertex_(vertex) {
   if (!sampler_.weighs()) {
     total_ = sampler_.pieces_.back().power_end;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/plane/path_tracing/emitter_range.h"
-#include "core/plane/path_tracing/sights.h"
+#include "core/plane/path_tracing/emitter_sights.h"
 #include "core/plane/path_tracing/vertex.h"
 #include "core/scene/scene.h"
 
@@ -31,16 +31,16 @@ struct EmitterSample {
 class EmitterSampler {
  public:
   static constexpr std::size_t kMostWeighed = 16;
-  static_assert(kMostWeighed <= Sight::kMost);
+  static_assert(kMostWeighed <= EmitterSight::kMost);
 
   // `pieces`: which to sample, in the order of elements; all others never light a vertex that will be asked about.
   EmitterSampler(std::shared_ptr<const Scene> scene, const std::vector<ElementId>& pieces);
 
   // Irradiance from all pieces but those whose way is known to be clear or hidden, if nothing blocked them; a guess for
   // arcs seen partly from inside, and for thousands of pieces.
-  Spectrum Unblocked(const Vertex& vertex, const Sight& sight) const;
+  Spectrum Unblocked(const Vertex& vertex, const EmitterSight& sight) const;
   // The rounding of directions in irradiance from all pieces that are not hidden.
-  Spectrum Rounding(const Vertex& vertex, const Sight& sight) const;
+  Spectrum Rounding(const Vertex& vertex, const EmitterSight& sight) const;
 
   bool empty() const { return pieces_.empty(); }
   // Whether emitters are weighed at every vertex.
@@ -51,7 +51,7 @@ class EmitterSampler {
   // not sampled.
   class View {
    public:
-    View(const EmitterSampler& sampler, const Vertex& vertex, const Sight& sight);
+    View(const EmitterSampler& sampler, const Vertex& vertex, const EmitterSight& sight);
 
     // No emitter can light the vertex, certain light aside.
     bool empty() const { return total_ == 0; }
@@ -95,10 +95,12 @@ class EmitterSampler {
 
  private:
   // Whether the light of a piece that is seen so is certain.
-  bool IsCertain(std::size_t piece, const EmitterRange& range, const Sight& sight) const {
+  bool IsCertain(std::size_t piece, const EmitterRange& range, const EmitterSight& sight) const {
     return weighs() && range.kind == EmitterRange::Kind::kSines && range.alone && ((sight.clear >> piece) & 1) != 0;
   }
-  bool IsHidden(std::size_t piece, const Sight& sight) const { return weighs() && ((sight.hidden >> piece) & 1) != 0; }
+  bool IsHidden(std::size_t piece, const EmitterSight& sight) const {
+    return weighs() && ((sight.hidden >> piece) & 1) != 0;
+  }
 
   struct Piece {
     ElementId id = ElementId::kNone;

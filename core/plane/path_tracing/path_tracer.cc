@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "core/math/check.h"
-#include "core/plane/path_tracing/emitter_reach.h"
 
 namespace flatlight {
 namespace {
@@ -32,20 +31,21 @@ double Largest(const std::array<double, kChannels>& weight) {
 
 std::vector<ElementId> EmittingPieces(const RayCaster& caster, const PathTracingOptions& options) {
   const Scene& scene = caster.scene();
-  const EmitterReach reach = ReachOfEmitters(scene, ReachNeedsTree(scene) ? &caster.bvh() : nullptr);
-  const bool bounces = options.max_bounces != 0u && scene.traits().max_reflectance > 0;
+  const std::vector<ElementId>& unseen = options.unseen_emitters;
   std::vector<ElementId> pieces;
-  for (const EmitterReach::Piece& piece : reach.pieces) {
-    const bool seen = piece.lights_points || (bounces && piece.lights_reflectors);
-    if (seen || !options.drop_unseen_emitters || reach.pieces.size() > EmitterSampler::kMostWeighed)
-      pieces.push_back(piece.id);
+  for (const Curve& curve : scene.curves()) {
+    if (!curve.Emits()) continue;
+    for (std::uint32_t e = curve.first_element; e < curve.first_element + curve.element_count; ++e) {
+      const ElementId id = static_cast<ElementId>(e);
+      if (std::find(unseen.begin(), unseen.end(), id) == unseen.end()) pieces.push_back(id);
+    }
   }
   return pieces;
 }
 
 }  // namespace
 
-PathTracer::Start::Start(const PathTracer& tracer, const Receiver& receiver, const Sight& sight)
+PathTracer::Start::Start(const PathTracer& tracer, const Receiver& receiver, const EmitterSight& sight)
     : tracer_(tracer), vertex_(VertexAt(tracer.scene_, receiver)), view_(tracer.emitters_, vertex_, sight) {}
 
 PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracingOptions& options)
@@ -62,7 +62,7 @@ PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracin
   }
 }
 
-Spectrum PathTracer::DirectStep(const Receiver& receiver, const Sight& sight) const {
+Spectrum PathTracer::DirectStep(const Receiver& receiver, const EmitterSight& sight) const {
   return options_.nothing_blocks ? Spectrum{} : emitters_.Unblocked(VertexAt(scene_, receiver), sight);
 }
 
@@ -79,7 +79,7 @@ Spectrum PathTracer::BrightestReflection() const {
   return bright * reflectance;
 }
 
-Spectrum PathTracer::DirectRounding(const Receiver& receiver, const Sight& sight) const {
+Spectrum PathTracer::DirectRounding(const Receiver& receiver, const EmitterSight& sight) const {
   return emitters_.Rounding(VertexAt(scene_, receiver), sight);
 }
 

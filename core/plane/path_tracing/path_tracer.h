@@ -10,7 +10,7 @@
 
 #include "core/execution/cancellation.h"
 #include "core/plane/path_tracing/emitter_sampler.h"
-#include "core/plane/path_tracing/sights.h"
+#include "core/plane/path_tracing/emitter_sights.h"
 #include "core/plane/path_tracing/vertex.h"
 #include "core/plane/ray_caster.h"
 #include "core/sampling/sample_stream.h"
@@ -25,7 +25,9 @@ struct PathTracingOptions {
   bool one_channel = false;            // Allowed if all spectra are grey.
   bool leave_out_shadow_rays = false;  // Where nothing can block them.
   bool end_black_paths = false;        // Ends a path where it meets a black surface.
-  bool drop_unseen_emitters = false;   // Those of which no light comes to a point or a curve that reflects.
+  // Those of which no light comes to a receiver or, with bounces, to a curve that reflects. At most
+  // EmitterSampler::kMostWeighed pieces must emit, so that the others are sampled as they would be anyway.
+  std::vector<ElementId> unseen_emitters;
 };
 
 // Irradiance by paths from the receiver. At each vertex the light of emitters to which the way is clear is added in
@@ -44,7 +46,7 @@ class PathTracer {
   // A receiver and what its paths have in common. Keeps a reference to the tracer.
   class Start {
    public:
-    Start(const PathTracer& tracer, const Receiver& receiver, const Sight& sight);
+    Start(const PathTracer& tracer, const Receiver& receiver, const EmitterSight& sight);
     Start(const Start&) = delete;
     Start& operator=(const Start&) = delete;
 
@@ -56,16 +58,16 @@ class PathTracer {
   };
 
   // What shapes tell of the ways from the receiver to the emitters: worth remembering.
-  Sight SightFrom(const Receiver& receiver) const { return sights_.FromPoint(VertexAt(scene_, receiver)); }
+  EmitterSight SightFrom(const Receiver& receiver) const { return sights_.FromPoint(VertexAt(scene_, receiver)); }
 
   // What the emitters that may be blocked or not would give the receiver if nothing blocked them: the most by which
   // finding a ray blocked or not can change a sample of direct light.
-  Spectrum DirectStep(const Receiver& receiver, const Sight& sight) const;
+  Spectrum DirectStep(const Receiver& receiver, const EmitterSight& sight) const;
   // What a path adds that finds the brightest place there may be after one reflection: one in the full light of the
   // brightest emitter, on the curve that reflects most.
   Spectrum BrightestReflection() const;
   // The rounding of direct light, which all samples share.
-  Spectrum DirectRounding(const Receiver& receiver, const Sight& sight) const;
+  Spectrum DirectRounding(const Receiver& receiver, const EmitterSight& sight) const;
 
   // Adds the estimate of one path to `irradiance` (channels() values, normalised), and the rays cast to `rays`. The
   // path is a function of the receiver and of stream and index. Stops early, with a value of no use, if cancelled.
@@ -90,7 +92,7 @@ class PathTracer {
   int channels_;
   std::vector<ElementId> emitting_;
   EmitterSampler emitters_;
-  Sights sights_;
+  EmitterSights sights_;
   std::vector<Surface> surfaces_;  // By curve.
 };
 

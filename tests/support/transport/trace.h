@@ -19,7 +19,7 @@ inline MeanEstimate Trace(const PathTracer& tracer, const Scene& scene, const Re
                           std::uint64_t point, std::uint32_t samples_per_replicate, double factor = 1) {
   const Cancellation never;
   const double scale = scene.frame().radiance_scale * factor;
-  const Sight sight = tracer.SightFrom(receiver);
+  const EmitterSight sight = tracer.SightFrom(receiver);
   const PathTracer::Start start(tracer, receiver, sight);
   std::array<double, kReplicates> means{};
   double rays = 0;

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/plane/path_tracing/emitter_range.h"
-#include "core/plane/path_tracing/sights.h"
+#include "core/plane/path_tracing/emitter_sights.h"
 #include "core/plane/ray_caster.h"
 #include "core/scene/element_frame.h"
 #include "tests/support/transport/scene_maker.h"
@@ -47,8 +47,7 @@ TEST(EmitterReachTest, UnseenEmittersGiveNoDirectLight) {
   int unseen_by_reflectors = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const std::shared_ptr<const Scene> scene = Stage(seed).Build();
-    const Bvh bvh(*scene);
-    const EmitterReach reach = ReachOfEmitters(*scene, &bvh);
+    const EmitterReach reach = ReachOfEmitters(*scene);
     const RayCaster caster(scene);
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
@@ -96,7 +95,7 @@ TEST(EmitterReachTest, UnseenEmittersGiveNoDirectLight) {
 }
 
 // Light that is called clear or hidden is, from points and from whole pieces, arcs included.
-TEST(SightsTest, AgreeWithRays) {
+TEST(EmitterSightsTest, AgreeWithRays) {
   int clear = 0;
   int hidden = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
@@ -107,7 +106,7 @@ TEST(SightsTest, AgreeWithRays) {
       const ElementId id = static_cast<ElementId>(e);
       if (scene->curve_of(id).Emits()) emitters.push_back(id);
     }
-    const Sights sights(caster, emitters);
+    const EmitterSights sights(caster, emitters);
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
     for (std::size_t e = 0; e < scene->elements().size(); ++e) {
@@ -116,8 +115,8 @@ TEST(SightsTest, AgreeWithRays) {
         const ElementFrame frame = FrameAt(element, unit(random));
         const Vector2 normal = unit(random) < 0.5 ? frame.normal : -frame.normal;
         const Vertex vertex{{frame.position, static_cast<ElementId>(e)}, normal, element.carrier};
-        for (const Sight& sight : {sights.FromPoint(vertex), sights.FromElement(vertex)}) {
-          for (std::size_t i = 0; i < std::min(emitters.size(), Sight::kMost); ++i) {
+        for (const EmitterSight& sight : {sights.FromPoint(vertex), sights.FromElement(vertex)}) {
+          for (std::size_t i = 0; i < std::min(emitters.size(), EmitterSight::kMost); ++i) {
             const bool two_sided = scene->curve_of(emitters[i]).two_sided;
             const Element& emitter = scene->element(emitters[i]);
             const EmitterRange range =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/plane/path_tracing/sights.h"
+#include "core/plane/path_tracing/emitter_sights.h"
 
 #include <utility>
 
@@ -11,15 +11,15 @@ constexpr std::size_t kMostElements = 1 << 14;
 
 }  // namespace
 
-Sights::Sights(const RayCaster& caster, std::vector<ElementId> emitters)
+EmitterSights::EmitterSights(const RayCaster& caster, std::vector<ElementId> emitters)
     : caster_(caster), emitters_(std::move(emitters)) {
-  if (emitters_.size() > Sight::kMost) emitters_.clear();
+  if (emitters_.size() > EmitterSight::kMost) emitters_.clear();
   if (!emitters_.empty() && caster.scene().elements().size() <= kMostElements) {
-    elements_ = SightMemory(2 * caster.scene().elements().size());
+    elements_ = EmitterSightMemory(2 * caster.scene().elements().size());
   }
 }
 
-const Element* Sights::HollowOf(const Vertex& vertex) const {
+const Element* EmitterSights::HollowOf(const Vertex& vertex) const {
   if (vertex.at.element == ElementId::kNone) return nullptr;
   const Element& element = caster_.scene().element(vertex.at.element);
   const bool hollow =
@@ -27,11 +27,11 @@ const Element* Sights::HollowOf(const Vertex& vertex) const {
   return hollow ? &element : nullptr;
 }
 
-Sight Sights::FromPoint(const Vertex& vertex) const {
+EmitterSight EmitterSights::FromPoint(const Vertex& vertex) const {
   return Look(CornersOf(vertex.at.position), vertex.carrier, HollowOf(vertex));
 }
 
-Sight Sights::FromElement(const Vertex& vertex) const {
+EmitterSight EmitterSights::FromElement(const Vertex& vertex) const {
   const std::size_t element = static_cast<std::size_t>(vertex.at.element);
   if (emitters_.empty() || caster_.scene().elements().size() > kMostElements) return {};
   const Element* hollow = HollowOf(vertex);
@@ -39,8 +39,8 @@ Sight Sights::FromElement(const Vertex& vertex) const {
                       [&] { return Look(CornersOf(caster_.scene().elements()[element]), vertex.carrier, hollow); });
 }
 
-Sight Sights::Look(const Corners& from, std::uint32_t carrier, const Element* hollow) const {
-  Sight sight;
+EmitterSight EmitterSights::Look(const Corners& from, std::uint32_t carrier, const Element* hollow) const {
+  EmitterSight sight;
   for (std::size_t i = 0; i < emitters_.size(); ++i) {
     const Element& emitter = caster_.scene().element(emitters_[i]);
     const Corners to = CornersOf(emitter);

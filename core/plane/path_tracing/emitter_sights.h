@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef FLATLIGHT_CORE_PLANE_PATH_TRACING_SIGHTS_H_
-#define FLATLIGHT_CORE_PLANE_PATH_TRACING_SIGHTS_H_
+#ifndef FLATLIGHT_CORE_PLANE_PATH_TRACING_EMITTER_SIGHTS_H_
+#define FLATLIGHT_CORE_PLANE_PATH_TRACING_EMITTER_SIGHTS_H_
 
 #include <atomic>
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace flatlight {
 
 // What shapes tell of the ways between a place and each of up to kMost emitting pieces, before any ray is cast. A bit
 // that is set is certain.
-struct Sight {
+struct EmitterSight {
   static constexpr std::size_t kMost = 31;
 
   std::uint32_t clear = 0;   // Bit i: no other curve stands between the place and piece i.
@@ -25,24 +25,24 @@ struct Sight {
 
   // In one word, with the top bit set.
   std::uint64_t Packed() const { return kKnown | (std::uint64_t{hidden} << 32) | clear; }
-  static Sight Unpacked(std::uint64_t word) {
+  static EmitterSight Unpacked(std::uint64_t word) {
     return {static_cast<std::uint32_t>(word), static_cast<std::uint32_t>((word & ~kKnown) >> 32)};
   }
   static constexpr std::uint64_t kKnown = std::uint64_t{1} << 63;
 };
 
-// Sights of places, looked up once each. Safe to use from several threads: whoever comes first works it out, and it is
-// the same for all.
-class SightMemory {
+// EmitterSights of places, looked up once each. Safe to use from several threads: whoever comes first works it out, and
+// it is the same for all.
+class EmitterSightMemory {
  public:
-  explicit SightMemory(std::size_t places = 0)
+  explicit EmitterSightMemory(std::size_t places = 0)
       : words_(places > 0 ? new std::atomic<std::uint64_t>[places] {} : nullptr) {}
 
   template <typename Look>
-  Sight At(std::size_t place, const Look& look) const {
+  EmitterSight At(std::size_t place, const Look& look) const {
     const std::uint64_t known = words_[place].load(std::memory_order_relaxed);
-    if (known != 0) return Sight::Unpacked(known);
-    const Sight sight = look();
+    if (known != 0) return EmitterSight::Unpacked(known);
+    const EmitterSight sight = look();
     words_[place].store(sight.Packed(), std::memory_order_relaxed);
     return sight;
   }
@@ -52,26 +52,26 @@ class SightMemory {
 };
 
 // The sights of single points and of whole elements.
-class Sights {
+class EmitterSights {
  public:
-  // `emitters` are the pieces by number; there may be more than Sight::kMost, but then nothing is known of any.
-  Sights(const RayCaster& caster, std::vector<ElementId> emitters);
+  // `emitters` are the pieces by number; there may be more than EmitterSight::kMost, but then nothing is known of any.
+  EmitterSights(const RayCaster& caster, std::vector<ElementId> emitters);
 
   // Worked out anew each time.
-  Sight FromPoint(const Vertex& vertex) const;
+  EmitterSight FromPoint(const Vertex& vertex) const;
   // From every point of the vertex's element, on the vertex's side; remembered.
-  Sight FromElement(const Vertex& vertex) const;
+  EmitterSight FromElement(const Vertex& vertex) const;
 
  private:
-  Sight Look(const Corners& from, std::uint32_t carrier, const Element* hollow) const;
+  EmitterSight Look(const Corners& from, std::uint32_t carrier, const Element* hollow) const;
   // The arc from whose inner side the vertex looks, or null.
   const Element* HollowOf(const Vertex& vertex) const;
 
   const RayCaster& caster_;
   std::vector<ElementId> emitters_;
-  SightMemory elements_;  // By element, then side.
+  EmitterSightMemory elements_;  // By element, then side.
 };
 
 }  // namespace flatlight
 
-#endif  // FLATLIGHT_CORE_PLANE_PATH_TRACING_SIGHTS_H_
+#endif  // FLATLIGHT_CORE_PLANE_PATH_TRACING_EMITTER_SIGHTS_H_
