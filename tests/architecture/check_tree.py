@@ -85,6 +85,16 @@ def check_pictures(tree):
         yield f"OpenImageIO is linked by {', '.join(users)}; only one module may link it"
 
 
+def check_peers(tree):
+    """CGAL is under the GPL, so only what is never shipped may link it; Box2D is there to be measured against alone."""
+    for target in tree.targets.values():
+        for dependency in sorted(target.dependencies):
+            if re.match(r"(CGAL|box2d)::", dependency) and not is_inside(target.folder, "tests/bench/peers"):
+                yield f"{target.folder}: {target.name} links {dependency}; only tests/bench/peers may"
+            if dependency.startswith("flatlight::bench_peers") and not is_inside(target.folder, "tests/bench/peers"):
+                yield f"{target.folder}: {target.name} links {dependency}, and so CGAL; only tests/bench/peers may"
+
+
 def check_includes(tree):
     """Every include of a project header is declared, and none goes round the rules."""
     for path in tree.files:
@@ -149,7 +159,7 @@ def names(targets):
 
 def violations(root):
     tree = source_tree.read_tree(root)
-    checks = (check_links, check_pictures, check_includes, check_files)
+    checks = (check_links, check_pictures, check_peers, check_includes, check_files)
     return [violation for check in checks for violation in check(tree)]
 
 

@@ -148,6 +148,21 @@ class CheckTreeTest(unittest.TestCase):
             },
         )
 
+    def test_core_links_cgal(self):
+        self.expect(
+            "core_math links CGAL::CGAL; only tests/bench/peers may",
+            {"core/math/CMakeLists.txt": "flatlight_library(core_math HEADERS vec.h PRIVATE_DEPS CGAL::CGAL)\n"},
+        )
+
+    def test_a_test_links_cgal_through_the_peers(self):
+        self.expect(
+            "links flatlight::bench_peers_cgal, and so CGAL",
+            {
+                "tests/core/math/CMakeLists.txt": "flatlight_test(vec_test\n"
+                "  DEPS flatlight::core_math flatlight::bench_peers_cgal LABELS unit)\n"
+            },
+        )
+
     def test_client_links_server_later(self):
         text = good_tree()["client/cli/CMakeLists.txt"]
         text += "target_link_libraries(flatlight PRIVATE flatlight::server_store)\n"
