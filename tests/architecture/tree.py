@@ -89,6 +89,7 @@ def _read_targets(text, folder, targets):
         "flatlight_program": "program",
         "flatlight_test": "test",
         "flatlight_bench": "bench",
+        "flatlight_table_bench": "bench",
         "add_library": "library",
         "add_executable": "program",
     }
@@ -98,14 +99,16 @@ def _read_targets(text, folder, targets):
             files = sections.get("HEADERS", []) + sections.get("SOURCES", [])
             files += [word for word in sections[""] if word not in _SCOPES]
             name = words[0]
-            if command in ("flatlight_test", "flatlight_bench"):
+            if command in ("flatlight_test", "flatlight_bench", "flatlight_table_bench"):
                 name = "_".join((*folder.parts, words[0]))
                 files.append(words[0] + ".cc")
             target = targets.setdefault(name, Target(name, kinds[command], folder))
             target.files |= {folder / file for file in files}
             target.dependencies |= set(sections.get("DEPS", []) + sections.get("PRIVATE_DEPS", []))
-            if command == "flatlight_bench":
+            if kinds[command] == "bench":
                 target.dependencies.add("flatlight::bench_scenes")
+            if command == "flatlight_table_bench":
+                target.dependencies |= {"flatlight::bench_report", "flatlight::bench_named_scenes"}
         elif command in ("target_link_libraries", "add_dependencies") and words[0] in targets:
             if command == "target_link_libraries":
                 targets[words[0]].dependencies |= {word for word in words[1:] if word not in _SCOPES}
