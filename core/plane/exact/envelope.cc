@@ -236,12 +236,26 @@ int Envelope::Crossings(const Sight& sight, const Sight& other, const SightEnd& 
 Envelope::Nearer Envelope::CompareBetween(const Sight& sight, const Sight& other, double low, double high) const {
   const double key = 0.5 * (low + high);
   const double distance = DistanceOf(sight, key), other_distance = DistanceOf(other, key);
-  // Near a silhouette the distance is uncertain by the root of the coordinates' error.
-  double doubt = 1e-12 * std::max(distance, other_distance) + 64 * scene_.coordinate_error();
-  for (const Sight* each : {&sight, &other})
-    if (each->part) doubt += 4e-8 * scene_.element(each->element).length;
-  if (std::abs(distance - other_distance) <= doubt) return Nearer::kDoubt;
+  const double doubt = 1e-12 * std::max(distance, other_distance) + DistanceDoubt(sight, key, distance) +
+                       DistanceDoubt(other, key, other_distance);
+  if (!(std::abs(distance - other_distance) > doubt)) return Nearer::kDoubt;
   return distance < other_distance ? Nearer::kYes : Nearer::kNo;
+}
+
+double Envelope::DistanceDoubt(const Sight& sight, double key, double distance) const {
+  // How far the ray is aside at the distance.
+  const double aside = 16 * kUnitRoundoff * std::abs(distance) + 4 * scene_.coordinate_error();
+  const UnitDirection d(key);
+  if (!sight.part) {
+    const double cross = d.normal * sight.along_tangent - d.tangent * sight.along_normal;
+    return std::abs(distance) * (sight.area_doubt / sight.area + 2 * sight.along_doubt / std::abs(cross));
+  }
+  // By its slope; where the ray touches the circle, by the root.
+  const Element& arc = scene_.element(sight.element);
+  const Vector2 direction = d.tangent * receiver_->tangent + d.normal * receiver_->normal;
+  const Vector2 radial = arc.radial_a + ((receiver_->position - arc.a) + distance * direction) / arc.radius;
+  const double incidence = std::abs(Dot(direction, radial)) / Length(radial);
+  return 2 * std::min(aside / incidence, std::sqrt(2 * aside * arc.radius));
 }
 
 double Envelope::DistanceOf(const Sight& sight, double key) const {

@@ -91,6 +91,7 @@ class Envelope {
   double FarSquared(const Sight& sight, std::uint32_t low_end, std::uint32_t high_end) const;
   double FarAt(const Sight& sight, const SightEnd& end) const;
   double DistanceOf(const Sight& sight, double key) const;
+  double DistanceDoubt(const Sight& sight, double key, double distance) const;
 
   const Scene& scene_;
   const Receiver* receiver_ = nullptr;

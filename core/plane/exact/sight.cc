@@ -14,6 +14,7 @@ constexpr double kRoundoffs = 8 * kUnitRoundoff;
 
 struct Local {
   double tangent, normal;
+  Local(double t, double n) : tangent(t), normal(n) {}
   Local(const Receiver& receiver, Point2 point)
       : tangent(Dot(receiver.tangent, point - receiver.position)),
         normal(Dot(receiver.normal, point - receiver.position)) {}
@@ -35,14 +36,27 @@ void SetHorizon(double sign, SightEnd& end) {
   end.kind = SightEnd::Kind::kHorizon;
 }
 
+// The vector between two points, in the receiver's components: to the accuracy of its own length.
+Local Between(const Receiver& receiver, Point2 from, Point2 to) {
+  const Vector2 v = to - from;
+  return {Dot(receiver.tangent, v), Dot(receiver.normal, v)};
+}
+
+// Twice the area of the triangle of the receiver and a segment, from whose nearer end nothing cancels.
+double Area(const Local& a, const Local& b, const Local& along) {
+  const Local& nearer = a.Reach() < b.Reach() ? a : b;
+  return nearer.normal * along.tangent - nearer.tangent * along.normal;
+}
+
 // What depends on the line through a segment's ends alone, from the lower to the higher one.
-inline void SetLine(const Local& a, const Local& b, double area, double coordinate_error, Sight& sight) {
-  sight.along_tangent = b.tangent - a.tangent, sight.along_normal = b.normal - a.normal;
+inline void SetLine(const Local& a, const Local& b, const Local& along, double area, double coordinate_error,
+                    Sight& sight) {
+  sight.along_tangent = along.tangent, sight.along_normal = along.normal;
   sight.area = area;
-  const double reach_a = a.Reach(), reach_b = b.Reach();
-  sight.area_doubt = kRoundoffs * reach_a * reach_b + 4 * coordinate_error * (reach_a + reach_b);
-  // The ends' own rounding is that of their reach.
-  sight.along_doubt = kRoundoffs * (reach_a + reach_b) + 4 * coordinate_error;
+  const double reach_a = a.Reach(), reach_b = b.Reach(), reach_along = along.Reach();
+  sight.area_doubt = kRoundoffs * std::min(reach_a, reach_b) * reach_along + 4 * coordinate_error * (reach_a + reach_b);
+  // Of a direction, too, the rounding counts.
+  sight.along_doubt = 2 * kRoundoffs * reach_along + 4 * coordinate_error;
   const double aa = a.tangent * a.tangent + a.normal * a.normal;
   const double bb = b.tangent * b.tangent + b.normal * b.normal;
   const double ab = a.tangent * b.tangent + a.normal * b.normal;
@@ -65,15 +79,17 @@ Seen SeeSegment(const Receiver& receiver, Point2 a, Point2 b, double coordinate_
   const double doubt_high = 8 * coordinate_error + kRoundoffs * high.Reach();
   if (low.normal < -doubt_low && high.normal < -doubt_high) return Seen::kNothing;
   if (std::abs(low.normal) <= doubt_low || std::abs(high.normal) <= doubt_high) return Seen::kDoubt;
-  double area = low.normal * high.tangent - low.tangent * high.normal;
+  Local along = Between(receiver, a, b);
+  double area = Area(low, high, along);
   const bool forward = area > 0;
   if (!forward) {
     std::swap(low, high);
     std::swap(a, b);
+    along = {-along.tangent, -along.normal};
     area = -area;
   }
   Sight& sight = seen.sight;
-  SetLine(low, high, area, coordinate_error, sight);
+  SetLine(low, high, along, area, coordinate_error, sight);
   // Edge-on, or through the receiver.
   if (!(sight.area > 4 * sight.area_doubt)) return Seen::kDoubt;
   // A part that runs along theta runs clockwise around a receiver whose tangent is on its normal's right, and has it on
@@ -107,11 +123,12 @@ Seen SeePart(const Scene& scene, const Receiver& receiver, const Part& part, boo
   const Element& element = scene.element(part.element);
   Sight& sight = seen.sight;
   const Local a(receiver, element.a), b(receiver, element.b);
-  const double area = a.normal * b.tangent - a.tangent * b.normal;
+  const Local along = Between(receiver, element.a, element.b);
+  const double area = Area(a, b, along);
   if (forward) {
-    SetLine(a, b, area, coordinate_error, sight);
+    SetLine(a, b, along, area, coordinate_error, sight);
   } else {
-    SetLine(b, a, -area, coordinate_error, sight);
+    SetLine(b, a, {-along.tangent, -along.normal}, -area, coordinate_error, sight);
   }
   sight.element = part.element;
   sight.front = forward == left_handed;
