@@ -184,7 +184,7 @@ Passage PassageBetween(const Scene& scene, const Bvh& bvh, const Corners& from, 
     std::uint32_t node;
     std::uint32_t frame;
   };
-  std::array<Entry, BvhNode::kWidth*(Bvh::kMaxDepth + 1)> stack;
+  std::array<Entry, std::size_t{BvhNode::kWidth} * (Bvh::kMaxDepth + 1)> stack;
   std::size_t size = 0;
   stack[size++] = {0, 0};
   while (size > 0) {

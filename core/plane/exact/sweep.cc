@@ -12,7 +12,9 @@ namespace flatlight {
 namespace {
 
 // Two distances that differ by less are equal: curves that touch.
-bool Nearer(double r1, double r2, double coordinate_error) { return r1 < r2 - 32 * kUnitRoundoff * r2 - 8 * coordinate_error; }
+bool Nearer(double r1, double r2, double coordinate_error) {
+  return r1 < r2 - 32 * kUnitRoundoff * r2 - 8 * coordinate_error;
+}
 
 // Distances that agree to this, relative, may be those of curves that meet; they are compared again so far aside (a
 // key).
