@@ -54,19 +54,35 @@ class PathSampler final : public PointSampler {
     for (std::size_t c = 0; c < doubts.size(); ++c) doubts[c] = {step.value[c], bright.value[c], rounding.value[c]};
   }
 
-  void AddBlock(std::size_t point, std::uint32_t block, const Cancellation& cancellation, std::span<double> sums,
-                double& rays) const override {
-    const PathTracer::Start start(tracer_, points_[point], SightFrom(point));
-    std::array<double, kMaxChannels> value{};
-    for (std::size_t replicate = 0; replicate < kReplicates; ++replicate) {
-      value.fill(0);
-      const SampleStream stream(seed_, point, replicate);
-      tracer_.AddPath(start, stream, block, cancellation, std::span(value).first(channels()), rays);
-      for (std::size_t c = 0; c < channels(); ++c) sums[c * kReplicates + replicate] += value[c];
-    }
-  }
+  std::unique_ptr<const Source> At(std::size_t point) const override { return std::make_unique<Paths>(*this, point); }
 
  private:
+  class Paths final : public Source {
+   public:
+    Paths(const PathSampler& sampler, std::size_t point)
+        : sampler_(sampler), start_(sampler.tracer_, sampler.points_[point], sampler.SightFrom(point)) {
+      for (std::size_t replicate = 0; replicate < kReplicates; ++replicate)
+        streams_.emplace_back(sampler.seed_, point, replicate);
+    }
+
+    void AddBlock(std::uint32_t block, const Cancellation& cancellation, std::span<double> sums,
+                  double& rays) const override {
+      const std::size_t channels = sampler_.channels();
+      std::array<double, kMaxChannels> value{};
+      for (std::size_t replicate = 0; replicate < kReplicates; ++replicate) {
+        value.fill(0);
+        sampler_.tracer_.AddPath(start_, streams_[replicate], block, cancellation, std::span(value).first(channels),
+                                 rays);
+        for (std::size_t c = 0; c < channels; ++c) sums[c * kReplicates + replicate] += value[c];
+      }
+    }
+
+   private:
+    const PathSampler& sampler_;
+    PathTracer::Start start_;
+    std::vector<SampleStream> streams_;
+  };
+
   EmitterSight SightFrom(std::size_t point) const {
     return sights_.At(point, [&] { return tracer_.SightFrom(points_[point]); });
   }
@@ -84,7 +100,12 @@ class DarkSampler final : public PointSampler {
  public:
   std::size_t channels() const override { return 1; }
   void Doubts(std::size_t, std::span<Doubt> doubts) const override { doubts[0] = {}; }
-  void AddBlock(std::size_t, std::uint32_t, const Cancellation&, std::span<double>, double&) const override {}
+  std::unique_ptr<const Source> At(std::size_t) const override { return std::make_unique<Nothing>(); }
+
+ private:
+  class Nothing final : public Source {
+    void AddBlock(std::uint32_t, const Cancellation&, std::span<double>, double&) const override {}
+  };
 };
 
 std::unique_ptr<const PointSampler> MakeSampler(std::shared_ptr<const Scene> scene,
@@ -97,9 +118,11 @@ std::unique_ptr<const PointSampler> MakeSampler(std::shared_ptr<const Scene> sce
   options.leave_out_shadow_rays = plan.Takes(skip::kVisibility);
   options.nothing_blocks = NothingBlocks(*scene);
   options.end_black_paths = plan.Takes(skip::kBlackPaths);
+  const EmitterReach reach = ReachOfEmitters(*scene);
+  options.nothing_reflects = !reach.LightsReflectors();
   if (plan.Takes(skip::kUnseenEmitters)) {
     const bool direct = DirectLightOnly(*scene, plan.settings);
-    for (const EmitterReach::Piece& piece : ReachOfEmitters(*scene).pieces)
+    for (const EmitterReach::Piece& piece : reach.pieces)
       if (!EmitterReach::Counts(piece, direct)) options.unseen_emitters.push_back(piece.id);
   }
   return std::make_unique<PathSampler>(std::move(scene), std::move(caster), options, plan.settings.seed.value_or(0));

@@ -2,9 +2,11 @@
 #include "core/render/point_blocks.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <memory>
 
 namespace flatlight {
 namespace {
@@ -22,32 +24,32 @@ constexpr double kShardsPerThread = 24;
 PointBlocks::PointBlocks(const PointSampler& sampler, std::size_t points)
     : sampler_(sampler),
       channels_(sampler.channels()),
-      trees_(points, BlockTree(sampler.channels() * kReplicates)),
+      trees_(points, BlockTree(Width())),
       doubts_(points * sampler.channels()),
       ranges_(points * 2 * sampler.channels()) {}
 
-std::vector<MeanEstimate> PointBlocks::EstimatesOf(std::size_t point, std::size_t first_replicate, std::size_t count,
-                                                   std::span<const double> steps) const {
-  std::vector<double> means(trees_[point].width());
-  trees_[point].Total(means);
-  const auto samples = static_cast<double>(trees_[point].blocks());
-  for (double& mean : means) mean /= samples;
-  std::vector<MeanEstimate> estimates;
-  for (std::size_t c = 0; c < channels_; ++c) {
-    const std::span<const double> values(means.data() + c * kReplicates + first_replicate, count);
-    estimates.push_back(EstimateMean(values, steps[c] / samples));
-    estimates.back().rounding = doubt(point, c).rounding;
+double PointBlocks::SampleVariance(std::size_t point, std::size_t half, std::size_t channel) const {
+  const double samples = static_cast<double>(blocks(point)) * kHalfReplicates;
+  const double mean = trees_[point].Total(MomentColumn(half, channel)) / samples;
+  const double square = trees_[point].Total(MomentColumn(half, channel) + 1) / samples;
+  return std::max(square - mean * mean, 0.0);
+}
+
+MeanEstimate PointBlocks::Estimate(std::size_t point, std::size_t channel, Halves halves,
+                                   const Missable& missable) const {
+  std::array<double, kReplicates> means;
+  const auto blocks = static_cast<double>(this->blocks(point));
+  const std::size_t count = halves.count() * kHalfReplicates;
+  for (std::size_t i = 0; i < count; ++i) {
+    means[i] = trees_[point].Total(channel * kReplicates + halves.first * kHalfReplicates + i) / blocks;
   }
-  return estimates;
-}
-
-std::vector<MeanEstimate> PointBlocks::Estimates(std::size_t point, std::span<const double> steps) const {
-  return EstimatesOf(point, 0, kReplicates, steps);
-}
-
-std::vector<MeanEstimate> PointBlocks::HalfEstimates(std::size_t point, std::size_t half,
-                                                     std::span<const double> steps) const {
-  return EstimatesOf(point, half * kHalfReplicates, kHalfReplicates, steps);
+  Missable of_value = missable;
+  of_value.seen /= blocks;
+  of_value.largest /= blocks;
+  of_value.variance /= blocks * static_cast<double>(count);
+  MeanEstimate estimate = EstimateMean(std::span(means).first(count), of_value);
+  estimate.rounding = doubt(point, channel).rounding;
+  return estimate;
 }
 
 void PointBlocks::SetGoals(std::vector<std::uint64_t> goals) {
@@ -114,23 +116,29 @@ PointBlocks::Shard PointBlocks::CutShard(Cursor& cursor) const {
 }
 
 void PointBlocks::Work(Shard& shard, const Cancellation& cancellation) const {
-  const std::size_t width = channels_ * kReplicates;
+  const std::size_t width = Width();
   std::vector<double> block(width);
   shard.nodes.resize(shard.pieces.size() * width);
   shard.ranges.resize(shard.pieces.size() * 2 * channels_);
   for (std::size_t i = 0; i < shard.pieces.size(); ++i) {
     const Piece& piece = shard.pieces[i];
     BlockTree tree(width);
+    const std::unique_ptr<const PointSampler::Source> source = sampler_.At(piece.point);
     for (std::uint64_t k = 0; k < (std::uint64_t{1} << piece.level); ++k) {
       std::fill(block.begin(), block.end(), 0.0);
-      sampler_.AddBlock(piece.point, static_cast<std::uint32_t>(piece.first + k), cancellation, block, shard.rays);
+      source->AddBlock(static_cast<std::uint32_t>(piece.first + k), cancellation,
+                       std::span(block).first(channels_ * kReplicates), shard.rays);
       if (cancellation.cancelled()) return;
-      tree.Append(0, block);
       for (std::size_t c = 0; c < channels_; ++c) {
         for (std::size_t r = 0; r < kReplicates; ++r) {
-          shard.ranges[(i * 2 + r / kHalfReplicates) * channels_ + c].Add(block[c * kReplicates + r]);
+          const std::size_t half = r / kHalfReplicates;
+          const double sample = block[c * kReplicates + r];
+          shard.ranges[(i * 2 + half) * channels_ + c].Add(sample);
+          block[MomentColumn(half, c)] += sample;
+          block[MomentColumn(half, c) + 1] += sample * sample;
         }
       }
+      tree.Append(0, block);
     }
     tree.Total(std::span(shard.nodes).subspan(i * width, width));
   }
@@ -138,7 +146,7 @@ void PointBlocks::Work(Shard& shard, const Cancellation& cancellation) const {
 }
 
 bool PointBlocks::Merge(const std::vector<Shard>& shards) {
-  const std::size_t width = channels_ * kReplicates;
+  const std::size_t width = Width();
   bool all = true;
   for (const Shard& shard : shards) {
     all = all && shard.complete;

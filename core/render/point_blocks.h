@@ -41,11 +41,17 @@ class PointBlocks {
     return ranges_[(point * 2 + half) * channels_ + channel];
   }
 
-  // Estimates from all replicates of a point that has blocks, one a channel. steps[c]: what one sample more may change
-  // (see EstimateMean).
-  std::vector<MeanEstimate> Estimates(std::size_t point, std::span<const double> steps) const;
-  // The same for one half.
-  std::vector<MeanEstimate> HalfEstimates(std::size_t point, std::size_t half, std::span<const double> steps) const;
+  // The variance of a single sample, whatever its replicate, as those of one half tell it.
+  double SampleVariance(std::size_t point, std::size_t half, std::size_t channel) const;
+
+  // The halves [first, last) of the replicates.
+  struct Halves {
+    std::size_t first = 0;
+    std::size_t last = 2;
+    std::size_t count() const { return last - first; }
+  };
+  // The estimate from some halves of a point that has blocks. `missable` is of single samples, not of replicates.
+  MeanEstimate Estimate(std::size_t point, std::size_t channel, Halves halves, const Missable& missable) const;
 
   // What to bring each point up to: one number of blocks a point; points that are further stay.
   void SetGoals(std::vector<std::uint64_t> goals);
@@ -78,8 +84,12 @@ class PointBlocks {
   void Work(Shard& shard, const Cancellation& cancellation) const;
   // True if everything was complete.
   bool Merge(const std::vector<Shard>& shards);
-  std::vector<MeanEstimate> EstimatesOf(std::size_t point, std::size_t first_replicate, std::size_t count,
-                                        std::span<const double> steps) const;
+
+  // A node: for each channel the sums of replicates; then, for each half and channel, of samples and their squares.
+  std::size_t Width() const { return channels_ * (kReplicates + 4); }
+  std::size_t MomentColumn(std::size_t half, std::size_t channel) const {
+    return channels_ * kReplicates + 2 * (half * channels_ + channel);
+  }
 
   const PointSampler& sampler_;
   std::size_t channels_;

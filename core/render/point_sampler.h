@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "core/execution/cancellation.h"
@@ -27,10 +28,17 @@ class PointSampler {
   };
   // Of each channel.
   virtual void Doubts(std::size_t point, std::span<Doubt> doubts) const = 0;
-  // Adds sample `block` of every replicate to `sums` (channel after channel, kReplicates each), and rays cast to
-  // `rays`. A pure function of point and block, safe to call from several threads; of no use once cancelled.
-  virtual void AddBlock(std::size_t point, std::uint32_t block, const Cancellation& cancellation,
-                        std::span<double> sums, double& rays) const = 0;
+  // The samples of one point; a caller that wants many asks for this once.
+  class Source {
+   public:
+    virtual ~Source() = default;
+    // Adds sample `block` of every replicate to `sums` (channel after channel, kReplicates each), and rays cast to
+    // `rays`. A pure function of point and block; of no use once cancelled.
+    virtual void AddBlock(std::uint32_t block, const Cancellation& cancellation, std::span<double> sums,
+                          double& rays) const = 0;
+  };
+  // Safe to call from several threads.
+  virtual std::unique_ptr<const Source> At(std::size_t point) const = 0;
 };
 
 }  // namespace flatlight

@@ -77,9 +77,10 @@ void ProgressiveSampling::OfferHalves() {
     std::array<CrossedHalves::Target, 2> targets;
     for (std::size_t half = 0; half < 2; ++half) {
       targets[half].relative = *goal_.target_error;
-      targets[half].brightest = Brightest(point, half, half + 1);
       for (std::size_t c = 0; c < channels(); ++c) {
         targets[half].floor.push_back(kDarkest * pilot_means_[half][probe_of_point_[point] * channels() + c]);
+        const Missable missable = MissableAt(point, c, {half, half + 1});
+        targets[half].brightest.push_back(std::max(missable.seen, missable.share * missable.largest));
       }
     }
     const double samples = static_cast<double>(blocks_.blocks(point)) * PointSampler::kBlockSamples;
@@ -185,35 +186,39 @@ ProgressiveSampling::ProbeMeans ProgressiveSampling::MeansOverProbes(const Value
   return means;
 }
 
-std::vector<double> ProgressiveSampling::Brightest(std::size_t point, std::size_t first_half,
-                                                   std::size_t last_half) const {
+Missable ProgressiveSampling::MissableAt(std::size_t point, std::size_t channel, Halves halves) const {
+  const PointSampler::Doubt& doubt = blocks_.doubt(point, channel);
+  Missable missable;
+  missable.largest = doubt.step + doubt.brightest;
+  if (missable.largest == 0) return missable;
   const std::size_t probe = probe_of_point_[point];
   const std::size_t begin = std::max(probe == 0 ? 0 : probe_ends_[probe - 1], point - std::min(point, kNeighbours));
   const std::size_t end = std::min(probe_ends_[probe], point + kNeighbours + 1);
-  std::vector<double> brightest(channels());
-  for (std::size_t c = 0; c < channels(); ++c) {
-    for (std::size_t p = begin; p < end; ++p) {
-      for (std::size_t half = first_half; half < last_half; ++half)
-        brightest[c] = std::max(brightest[c], blocks_.range(p, half, c).Width());
+  double variance = 0;
+  double count = 0;
+  for (std::size_t p = begin; p < end; ++p) {
+    if (blocks_.blocks(p) == 0) continue;
+    ++count;
+    for (std::size_t half = halves.first; half < halves.last; ++half) {
+      missable.seen = std::max(missable.seen, blocks_.range(p, half, channel).Width());
+      variance += blocks_.SampleVariance(p, half, channel);
     }
-    const PointSampler::Doubt& doubt = blocks_.doubt(point, c);
-    brightest[c] = std::max(brightest[c], doubt.brightest / std::sqrt(static_cast<double>(end - begin)));
-    brightest[c] = std::min(brightest[c], doubt.step + doubt.brightest);
   }
-  return brightest;
+  missable.seen = std::min(missable.seen, missable.largest);
+  missable.share = 1 / std::sqrt(count);
+  missable.variance = variance / (count * static_cast<double>(halves.count()));
+  return missable;
 }
 
-std::vector<double> ProgressiveSampling::Steps(std::size_t point, std::vector<double> brightest) const {
-  for (std::size_t c = 0; c < channels(); ++c) brightest[c] = std::max(brightest[c], blocks_.doubt(point, c).step);
-  return brightest;
+CrossedHalves::HalfEstimate ProgressiveSampling::EstimateOf(std::size_t point, Halves halves) const {
+  CrossedHalves::HalfEstimate estimates;
+  for (std::size_t c = 0; c < channels(); ++c)
+    estimates.push_back(blocks_.Estimate(point, c, halves, MissableAt(point, c, halves)));
+  return estimates;
 }
 
 std::array<CrossedHalves::HalfEstimate, 2> ProgressiveSampling::HalfEstimates(std::size_t point) const {
-  std::array<CrossedHalves::HalfEstimate, 2> estimates;
-  for (const std::size_t half : {0, 1}) {
-    estimates[half] = blocks_.HalfEstimates(point, half, Steps(point, Brightest(point, half, half + 1)));
-  }
-  return estimates;
+  return {EstimateOf(point, {0, 1}), EstimateOf(point, {1, 2})};
 }
 
 ProgressiveSampling::ProbeMeans ProgressiveSampling::CurrentMeans() const {
@@ -225,7 +230,7 @@ ProgressiveSampling::PointValue ProgressiveSampling::Value(std::size_t point) co
   value.samples = static_cast<double>(blocks_.blocks(point)) * PointSampler::kBlockSamples;
   if (value.samples == 0) return value;
   if (halves_.empty()) {
-    value.estimates = blocks_.Estimates(point, Steps(point, Brightest(point, 0, 2)));
+    value.estimates = EstimateOf(point, {0, 2});
     return value;
   }
   const auto halves = HalfEstimates(point);

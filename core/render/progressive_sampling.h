@@ -71,11 +71,11 @@ class ProgressiveSampling {
   ProbeMeans MeansOverProbes(const Values& values) const;
   ProbeMeans CurrentMeans() const;
   double WorstError(std::size_t point, const ProbeMeans& means) const;
-  // By how much one more bright sample may differ from the common ones, for each channel: as much as any seen around
-  // the point by the replicates of the halves [first, last), or as may have been missed there.
-  std::vector<double> Brightest(std::size_t point, std::size_t first_half, std::size_t last_half) const;
-  // What one sample more may change: that, or a ray that is blocked or not.
-  std::vector<double> Steps(std::size_t point, std::vector<double> brightest) const;
+  using Halves = PointBlocks::Halves;
+
+  // What samples may have missed at the point, as its neighbours tell by the same halves of their replicates.
+  Missable MissableAt(std::size_t point, std::size_t channel, Halves halves) const;
+  CrossedHalves::HalfEstimate EstimateOf(std::size_t point, Halves halves) const;
   std::array<CrossedHalves::HalfEstimate, 2> HalfEstimates(std::size_t point) const;
   bool Active(std::size_t point) const { return !goal_.target_error.has_value() || !halves_[point].decided(); }
 

@@ -51,6 +51,14 @@ class BlockTree {
     }
   }
 
+  // One of them.
+  double Total(std::size_t column) const {
+    FLATLIGHT_DCHECK(column < width_);
+    double total = 0;
+    for (std::size_t end = nodes_.size(); end != 0; end -= width_) total += nodes_[end - width_ + column];
+    return total;
+  }
+
   // The level of the largest aligned range of blocks that begins at `first`, ends at or before `end` > first, and has
   // at most 2^max_level blocks.
   static unsigned AlignedLevel(std::uint64_t first, std::uint64_t end, unsigned max_level) {

@@ -18,7 +18,7 @@ double MeanEstimate::StandardError() const {
   return std::max(spread, kRounding * std::abs(mean) + rounding);
 }
 
-MeanEstimate EstimateMean(std::span<const double> values, double step) {
+MeanEstimate EstimateMean(std::span<const double> values, const Missable& missable) {
   const auto n = static_cast<double>(values.size());
   double sum = 0;
   for (const double x : values) sum += x;
@@ -28,8 +28,12 @@ MeanEstimate EstimateMean(std::span<const double> values, double step) {
   for (const double x : values) squares += (x - estimate.mean) * (x - estimate.mean);
   estimate.variance = squares / ((n - 1) * n);
   estimate.degrees_of_freedom = n - 1;
-  // One value on the other side of the edge would make the sum of squares (1 - 1/n) step^2.
-  if (squares < 0.25 * step * step) estimate.unresolved = step * std::sqrt(2 / ((n + 2) * (n + 3)));
+  // One value that has met the event makes the sum of squares (1 - 1/n) times its square.
+  const double event = std::max(missable.seen, missable.share * missable.largest);
+  if (squares < 0.25 * event * event) {
+    const double most = missable.largest * std::sqrt(2 / ((n + 2) * (n + 3)));
+    estimate.unresolved = std::clamp(std::sqrt(missable.variance), missable.share * most, most);
+  }
   return estimate;
 }
 

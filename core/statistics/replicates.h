@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 namespace flatlight {
@@ -26,11 +27,26 @@ struct MeanEstimate {
   double StandardError() const;
 };
 
-// `step` is what one sample of a value, had it fallen to the other side of an edge, would change that value. Stratified
-// samples place an edge to within one sample, so values may all agree and all be wrong by part of a step. Let a share d
-// of such values lie on the other side, all d alike likely: if none of n does, the mean square of d is
-// 2/((n + 2)(n + 3)) (Laplace's rule of succession), and that is added. If some do, their spread tells.
-MeanEstimate EstimateMean(std::span<const double> values, double step);
+// An event that values may all have missed: a sample that falls to the other side of an edge, or on something bright.
+struct Missable {
+  double seen = 0;     // By how much one that was met nearby would change a value.
+  double largest = 0;  // The most that there may be.
+  // Nearby there are 1 / share^2 times as many samples as behind the values: what none of them met is so much rarer.
+  double share = 1;
+  // Of the mean, if events are as frequent as nearby.
+  double variance = std::numeric_limits<double>::infinity();
+};
+
+// Stratified samples place an edge to within one sample, and rare events are missed, so values may all agree and all be
+// wrong. Let a share d of such values have met the event, all d alike likely: if none of n has, the mean square of d is
+// 2/((n + 2)(n + 3)) (Laplace's rule of succession), and the doubt that follows is added: that of the largest event,
+// less where samples nearby tell of rarer or smaller ones. If some values have met it, their spread tells.
+MeanEstimate EstimateMean(std::span<const double> values, const Missable& missable);
+
+// The same, where nothing is known from nearby of an event that changes a value by `step`.
+inline MeanEstimate EstimateMean(std::span<const double> values, double step) {
+  return EstimateMean(values, Missable{step, step});
+}
 
 // The plain average of two independent estimates. Its degrees of freedom are those of Welch (1947).
 MeanEstimate Average(const MeanEstimate& a, const MeanEstimate& b);

@@ -4,6 +4,8 @@
 //   sampling_efficiency [CSV [SCENE]]      the rows go to CSV (default: sampling_efficiency.csv) as well; with SCENE,
 //                                          only scenes whose name has it in it
 //
+// z^2 is the mean square of (value - truth) / stated error: above 1, errors are stated too small.
+//
 // The variance is the mean square of (value - truth) / truth over the points of a scene and over seeds, for one path a
 // point: measured at 256 paths and scaled. Truth is exact for direct light, else a long rendering, whose own error is
 // taken off. Efficiencies are per second, and per ray: twice as much means the same error in half the time. To compare
@@ -67,7 +69,7 @@ void Measure(const Case& c, BenchTable& table) {
   settings.samples = kSamples;
   InlineExecutor executor;
   std::vector<double> seconds;
-  double squares = 0, stated = 0, values = 0, rays = 0, doubt = 0;
+  double squares = 0, z_squares = 0, values = 0, rays = 0, doubt = 0;
   for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
     settings.seed = seed;
     const double start = ThreadSeconds();
@@ -83,9 +85,11 @@ void Measure(const Case& c, BenchTable& table) {
         const double scale = std::max(b.irradiance[i], 0.01 * mean);
         if (!(scale > 0)) continue;
         const double error = (a.irradiance[i] - b.irradiance[i]) / scale;
+        const double truth_error = b.standard_error.empty() ? 0 : b.standard_error[i] / scale;
         squares += error * error;
-        stated += std::pow(a.standard_error[i] / scale, 2);
-        if (!b.standard_error.empty()) doubt += std::pow(b.standard_error[i] / scale, 2);
+        doubt += truth_error * truth_error;
+        const double stated = std::hypot(a.standard_error[i] / scale, truth_error);
+        if (stated > 0) z_squares += error * error / (stated * stated);
         ++values;
       }
     }
@@ -95,7 +99,7 @@ void Measure(const Case& c, BenchTable& table) {
   const double time = QuartilesOf(seconds).median / paths;
   const double rays_per_path = rays / kSeeds / paths;
   table.Add({c.scene.name, c.direct ? "direct" : "all", Short(variance), Short(1e9 * time), Short(rays_per_path),
-             Short(1 / (variance * time)), Short(1 / (variance * rays_per_path)), Short(squares / stated)});
+             Short(1 / (variance * time)), Short(1 / (variance * rays_per_path)), Short(z_squares / values)});
 }
 
 int Run(const std::string& csv, const std::string& only) {

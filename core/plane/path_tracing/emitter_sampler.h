@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/plane/path_tracing/emitter_range.h"
 #include "core/plane/path_tracing/emitter_sights.h"
+#include "core/plane/path_tracing/emitter_tree.h"
 #include "core/plane/path_tracing/vertex.h"
 #include "core/scene/scene.h"
 
@@ -25,9 +27,9 @@ struct EmitterSample {
 };
 
 // Chooses points on emitters for a vertex. With up to kMostWeighed emitting pieces they are weighed at every vertex by
-// the irradiance they would give if nothing blocked; with more they are chosen by power. Straight and circular emitters
-// are sampled uniformly in the sine of the direction, other arcs uniformly in arc length. All densities are per angle:
-// pdf_theta = pdf_length * distance / cosine at the emitter (THEORY 18 B11).
+// the irradiance they would give if nothing blocked; with more a tree leads to a few of them, which are. Straight and
+// circular emitters are sampled uniformly in the sine of the direction, other arcs uniformly in arc length. All
+// densities are per angle: pdf_theta = pdf_length * distance / cosine at the emitter (THEORY 18 B11).
 class EmitterSampler {
  public:
   static constexpr std::size_t kMostWeighed = 16;
@@ -52,6 +54,10 @@ class EmitterSampler {
   class View {
    public:
     View(const EmitterSampler& sampler, const Vertex& vertex, const EmitterSight& sight);
+    View(const View&) = delete;
+    View& operator=(const View&) = delete;
+    // For a vertex from which many samples will be asked: takes longer, and then chooses better among very many.
+    void LookCloser();
 
     // No emitter can light the vertex, certain light aside.
     bool empty() const { return total_ == 0; }
@@ -80,20 +86,42 @@ class EmitterSampler {
       EmitterRange range;
       double weight = 0;  // 0 if the range is empty.
     };
+    // A piece, or a cluster of the tree.
+    struct Group {
+      double weight_end = 0;    // Sum of the weights up to and with this group.
+      std::uint32_t first = 0;  // Piece.
+      std::uint32_t cluster = kOnePiece;
+      Seen seen;  // Of one piece.
+    };
+    static constexpr std::uint32_t kOnePiece = 0xffffffff;
+    struct Choice {
+      std::uint32_t piece = 0;
+      EmitterRange range;
+      double probability = 1;
+      double place = 0;  // What is left of the random number.
+    };
     Seen See(std::size_t piece) const;
     SurfacePoint PlaceOn(std::size_t piece, double u) const;
-    std::optional<EmitterSample> SampleLength(std::size_t piece, double probability, double u) const;
+    bool Choose(double u, Choice& choice) const;
+    bool ChooseInLeaf(const EmitterTree::Leaf& leaf, Choice& choice) const;
+    static bool ChooseAmong(std::span<const Seen> seen, std::uint32_t first, double total, double u, Choice& choice);
+    bool Find(Choice& choice) const;
+    bool FindInLeaf(const EmitterTree::Leaf& leaf, Choice& choice) const;
+    std::optional<EmitterSample> SampleLength(const Choice& choice) const;
 
     const EmitterSampler& sampler_;
     const Vertex& vertex_;
     Spectrum certain_;
     std::uint32_t certain_pieces_ = 0;     // Bit by piece.
     std::array<Seen, kMostWeighed> seen_;  // By piece, if weighed.
+    std::vector<Group> groups_;            // In the order of pieces, after a closer look.
     double total_ = 0;
     bool sufficient_ = false;
   };
 
  private:
+  static constexpr std::uint32_t kNotAPiece = 0xffffffff;
+
   // Whether the light of a piece that is seen so is certain.
   bool IsCertain(std::size_t piece, const EmitterRange& range, const EmitterSight& sight) const {
     return weighs() && range.kind == EmitterRange::Kind::kSines && range.alone && ((sight.clear >> piece) & 1) != 0;
@@ -102,17 +130,19 @@ class EmitterSampler {
     return weighs() && ((sight.hidden >> piece) & 1) != 0;
   }
 
+  void PlantTree();
+
   struct Piece {
     ElementId id = ElementId::kNone;
     Element element;
     EmittingSides sides = EmittingSides::kFront;
     Spectrum radiance;
     double brightness = 0;  // Largest channel.
-    double power_end = 0;   // Sum of the powers up to and with this piece.
   };
 
   std::shared_ptr<const Scene> scene_;
-  std::vector<Piece> pieces_;
+  EmitterTree tree_;                             // Where emitters are not weighed one by one.
+  std::vector<Piece> pieces_;                    // In the order of the tree, or of elements.
   std::vector<std::uint32_t> piece_of_element_;  // kNotAPiece if it does not emit.
 };
 

@@ -46,7 +46,9 @@ std::vector<ElementId> EmittingPieces(const RayCaster& caster, const PathTracing
 }  // namespace
 
 PathTracer::Start::Start(const PathTracer& tracer, const Receiver& receiver, const EmitterSight& sight)
-    : tracer_(tracer), vertex_(VertexAt(tracer.scene_, receiver)), view_(tracer.emitters_, vertex_, sight) {}
+    : tracer_(tracer), vertex_(VertexAt(tracer.scene_, receiver)), view_(tracer.emitters_, vertex_, sight) {
+  view_.LookCloser();
+}
 
 PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracingOptions& options)
     : caster_(std::move(caster)),
@@ -68,7 +70,7 @@ Spectrum PathTracer::DirectStep(const Receiver& receiver, const EmitterSight& si
 
 Spectrum PathTracer::BrightestReflection() const {
   Spectrum bright;
-  if (options_.max_bounces == 0u || emitters_.empty()) return bright;
+  if (options_.max_bounces == 0u || options_.nothing_reflects || emitters_.empty()) return bright;
   Spectrum reflectance;
   for (const Curve& curve : scene_.curves()) {
     for (int c = 0; c < kMaxChannels; ++c) {

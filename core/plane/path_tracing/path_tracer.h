@@ -21,6 +21,7 @@ namespace flatlight {
 struct PathTracingOptions {
   std::optional<std::uint32_t> max_bounces;  // Reflections between emitter and receiver. Absent: all.
   bool nothing_blocks = false;               // It is certain that no curve stands between emitters and points.
+  bool nothing_reflects = false;             // No light comes to a curve that reflects.
   // Work that a scene may not need. Where they are allowed these change no result.
   bool one_channel = false;            // Allowed if all spectra are grey.
   bool leave_out_shadow_rays = false;  // Where nothing can block them.

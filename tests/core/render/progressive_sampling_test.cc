@@ -27,6 +27,22 @@ class ManualClock final : public Clock {
   std::atomic<Duration::rep> nanoseconds_ = 0;
 };
 
+// A source that calls add(block, sums, rays).
+template <typename Add>
+std::unique_ptr<const PointSampler::Source> SourceOf(Add add) {
+  class Added final : public PointSampler::Source {
+   public:
+    explicit Added(Add a) : add_(std::move(a)) {}
+    void AddBlock(std::uint32_t block, const Cancellation&, std::span<double> sums, double& rays) const override {
+      add_(block, sums, rays);
+    }
+
+   private:
+    Add add_;
+  };
+  return std::make_unique<Added>(std::move(add));
+}
+
 // Uniform numbers around 1 + point; each block takes some time of a manual clock.
 class UniformSampler final : public PointSampler {
  public:
@@ -34,13 +50,14 @@ class UniformSampler final : public PointSampler {
       : clock_(clock), block_time_(block_time) {}
   std::size_t channels() const override { return 1; }
   void Doubts(std::size_t, std::span<Doubt> doubts) const override { doubts[0] = {}; }
-  void AddBlock(std::size_t point, std::uint32_t block, const Cancellation&, std::span<double> sums,
-                double& rays) const override {
-    for (std::size_t r = 0; r < kReplicates; ++r) {
-      sums[r] += static_cast<double>(point) + 2 * ToUnitInterval(ChildKey(ChildKey(point, block), r));
-    }
-    rays += kReplicates;
-    if (clock_ != nullptr) clock_->Advance(block_time_);
+  std::unique_ptr<const Source> At(std::size_t point) const override {
+    return SourceOf([this, point](std::uint32_t block, std::span<double> sums, double& rays) {
+      for (std::size_t r = 0; r < kReplicates; ++r) {
+        sums[r] += static_cast<double>(point) + 2 * ToUnitInterval(ChildKey(ChildKey(point, block), r));
+      }
+      rays += kReplicates;
+      if (clock_ != nullptr) clock_->Advance(block_time_);
+    });
   }
 
  private:
@@ -149,11 +166,12 @@ class DrawnSampler final : public PointSampler {
   DrawnSampler(std::uint64_t seed, Draw draw, double brightest) : seed_(seed), draw_(draw), brightest_(brightest) {}
   std::size_t channels() const override { return 1; }
   void Doubts(std::size_t, std::span<Doubt> doubts) const override { doubts[0] = {0, brightest_, 0}; }
-  void AddBlock(std::size_t point, std::uint32_t block, const Cancellation&, std::span<double> sums,
-                double&) const override {
-    for (std::size_t r = 0; r < kReplicates; ++r) {
-      sums[r] += draw_(ToUnitInterval(ChildKey(ChildKey(ChildKey(seed_, point), block), r)));
-    }
+  std::unique_ptr<const Source> At(std::size_t point) const override {
+    return SourceOf([this, point](std::uint32_t block, std::span<double> sums, double&) {
+      for (std::size_t r = 0; r < kReplicates; ++r) {
+        sums[r] += draw_(ToUnitInterval(ChildKey(ChildKey(ChildKey(seed_, point), block), r)));
+      }
+    });
   }
 
  private:
