@@ -36,7 +36,7 @@ Hit RayCaster::HitAt(const WalkRay& ray, const NearestCrossing& nearest) const {
 
 std::optional<Hit> RayCaster::ClosestHit(const SurfacePoint& from, Vector2 direction) const {
   const WalkRay ray{EndAt(from), direction};
-  const NearestCrossing nearest = FindNearest(*scene_, bvh_, ray);
+  const NearestCrossing nearest = searches_->nearest(*scene_, bvh_, ray);
   if (nearest.t == std::numeric_limits<double>::infinity()) return std::nullopt;
   return HitAt(ray, nearest);
 }
@@ -52,7 +52,7 @@ void RayCaster::ClosestHits(std::span<const Ray> rays, std::span<std::optional<H
   for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
     const std::size_t count = std::min(kBatch, rays.size() - begin);
     for (std::size_t i = 0; i < count; ++i) walk_rays[i] = {EndAt(rays[begin + i].from), rays[begin + i].direction};
-    FindNearest(*scene_, bvh_, std::span(walk_rays).first(count), std::span(nearest).first(count));
+    searches_->nearest_of_many(*scene_, bvh_, std::span(walk_rays).first(count), std::span(nearest).first(count));
     for (std::size_t i = 0; i < count; ++i) {
       const bool met = nearest[i].t < std::numeric_limits<double>::infinity();
       hits[begin + i] = met ? std::optional(HitAt(walk_rays[i], nearest[i])) : std::nullopt;
@@ -61,7 +61,7 @@ void RayCaster::ClosestHits(std::span<const Ray> rays, std::span<std::optional<H
 }
 
 bool RayCaster::Visible(const SurfacePoint& from, const SurfacePoint& to) const {
-  return !FindBlocker(*scene_, bvh_, EndAt(from), EndAt(to));
+  return !searches_->blocked(*scene_, bvh_, EndAt(from), EndAt(to));
 }
 
 void RayCaster::Visible(std::span<const SurfacePoint> from, std::span<const SurfacePoint> to,
@@ -76,11 +76,11 @@ void RayCaster::Visible(std::span<const SurfacePoint> from, std::span<const Surf
     const std::size_t count = std::min(kBatch, from.size() - first);
     for (std::size_t i = 0; i < count; ++i) begins[i] = EndAt(from[first + i]), ends[i] = EndAt(to[first + i]);
     const std::span<bool> results = visible.subspan(first, count);
-    FindBlockers(*scene_, bvh_, std::span(begins).first(count), std::span(ends).first(count), results);
+    searches_->blocked_of_many(*scene_, bvh_, std::span(begins).first(count), std::span(ends).first(count), results);
     for (bool& result : results) result = !result;
   }
 }
 
-bool RayCaster::Touches(const SurfacePoint& point) const { return FindTouching(*scene_, bvh_, EndAt(point)); }
+bool RayCaster::Touches(const SurfacePoint& point) const { return searches_->touched(*scene_, bvh_, EndAt(point)); }
 
 }  // namespace flatlight

@@ -65,6 +65,7 @@ class RayCaster {
 
   std::shared_ptr<const Scene> scene_;
   Bvh bvh_;
+  const RaySearches* searches_ = &ChosenRaySearches();
 };
 
 }  // namespace flatlight

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/plane/ray_walk.h"
 
-#include "core/math/check.h"
 #include "core/plane/intersect.h"
 #include "core/scene/element_frame.h"
 
@@ -206,6 +205,11 @@ bool Touching(const Scene& scene, const Bvh& bvh, const RayEnd& place) {
   return touches;
 }
 
+const RaySearches* Searches() {
+  static constexpr RaySearches kSearches{&Nearest, &NearestOfMany, &Blocker, &BlockerOfMany, &Touching};
+  return &kSearches;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace flatlight
 HWY_AFTER_NAMESPACE();
@@ -213,35 +217,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace flatlight {
 
-HWY_EXPORT(Nearest);
-HWY_EXPORT(NearestOfMany);
-HWY_EXPORT(Blocker);
-HWY_EXPORT(BlockerOfMany);
-HWY_EXPORT(Touching);
+HWY_EXPORT(Searches);
 
-NearestCrossing FindNearest(const Scene& scene, const Bvh& bvh, const WalkRay& ray) {
-  return HWY_DYNAMIC_DISPATCH(Nearest)(scene, bvh, ray);
-}
-
-void FindNearest(const Scene& scene, const Bvh& bvh, std::span<const WalkRay> rays,
-                 std::span<NearestCrossing> nearest) {
-  FLATLIGHT_DCHECK(rays.size() == nearest.size());
-  HWY_DYNAMIC_DISPATCH(NearestOfMany)(scene, bvh, rays, nearest);
-}
-
-bool FindBlocker(const Scene& scene, const Bvh& bvh, const RayEnd& from, const RayEnd& to) {
-  return HWY_DYNAMIC_DISPATCH(Blocker)(scene, bvh, from, to);
-}
-
-void FindBlockers(const Scene& scene, const Bvh& bvh, std::span<const RayEnd> from, std::span<const RayEnd> to,
-                  std::span<bool> blocked) {
-  FLATLIGHT_DCHECK(from.size() == to.size() && from.size() == blocked.size());
-  HWY_DYNAMIC_DISPATCH(BlockerOfMany)(scene, bvh, from, to, blocked);
-}
-
-bool FindTouching(const Scene& scene, const Bvh& bvh, const RayEnd& place) {
-  return HWY_DYNAMIC_DISPATCH(Touching)(scene, bvh, place);
-}
+const RaySearches& ChosenRaySearches() { return *HWY_DYNAMIC_DISPATCH(Searches)(); }
 
 }  // namespace flatlight
 #endif

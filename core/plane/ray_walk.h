@@ -33,21 +33,24 @@ struct NearestCrossing {
   bool straight = true;    // Whether it is a segment.
 };
 
-// The first element met at t > 0; ties break by (t, element).
-NearestCrossing FindNearest(const Scene& scene, const Bvh& bvh, const WalkRay& ray);
+// The searches, compiled for one vector unit. All units give the same bits.
+struct RaySearches {
+  // The first element met at t > 0; ties break by (t, element).
+  NearestCrossing (*nearest)(const Scene& scene, const Bvh& bvh, const WalkRay& ray);
+  // The same for many rays, which costs less than one after another. Spans of one length.
+  void (*nearest_of_many)(const Scene& scene, const Bvh& bvh, std::span<const WalkRay> rays,
+                          std::span<NearestCrossing> nearest);
+  // Whether something lies between two places.
+  bool (*blocked)(const Scene& scene, const Bvh& bvh, const RayEnd& from, const RayEnd& to);
+  // The same for many pairs of places. Spans of one length.
+  void (*blocked_of_many)(const Scene& scene, const Bvh& bvh, std::span<const RayEnd> from, std::span<const RayEnd> to,
+                          std::span<bool> blocked);
+  // Whether an element of another line or circle than its own passes through a place, to the scene's touch distance.
+  bool (*touched)(const Scene& scene, const Bvh& bvh, const RayEnd& place);
+};
 
-// The same for many rays, which costs less than one after another. Spans of one length.
-void FindNearest(const Scene& scene, const Bvh& bvh, std::span<const WalkRay> rays, std::span<NearestCrossing> nearest);
-
-// Whether something lies between two places.
-bool FindBlocker(const Scene& scene, const Bvh& bvh, const RayEnd& from, const RayEnd& to);
-
-// The same for many pairs of places. Spans of one length.
-void FindBlockers(const Scene& scene, const Bvh& bvh, std::span<const RayEnd> from, std::span<const RayEnd> to,
-                  std::span<bool> blocked);
-
-// Whether an element of another line or circle than its own passes through a place, to the scene's touch distance.
-bool FindTouching(const Scene& scene, const Bvh& bvh, const RayEnd& place);
+// For the best vector unit of this processor. Never changes, but in tests that choose another.
+const RaySearches& ChosenRaySearches();
 
 }  // namespace flatlight
 
