@@ -22,7 +22,7 @@ int OrderOf(const Plan& plan) { return static_cast<int>(plan.settings.derivative
 
 ExactOptions OptionsOf(const Plan& plan) {
   ExactOptions options;
-  options.derivatives = plan.Takes(skip::kDerivatives) ? OrderOf(plan) : 2;
+  options.derivatives = OrderOf(plan);
   options.occlusion = !plan.Takes(skip::kVisibility);
   options.channels = plan.Takes(skip::kColour) ? 1 : kMaxChannels;
   return options;

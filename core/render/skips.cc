@@ -77,10 +77,6 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
   const std::string nothing_reason = "nothing can stand between two points: blockers are not looked for";
   if (settings.method == Method::kExact) {
     decisions.Add(skip::kVisibility, nothing_blocks, nothing_reason, "curves may block each other");
-    const bool none = settings.derivatives == Derivatives::kNone;
-    decisions.Add(skip::kDerivatives, settings.derivatives != Derivatives::kHessian,
-                  none ? "no derivatives were asked for" : "the second derivative was not asked for",
-                  "both derivatives were asked for");
     const std::string reason = "exact light is direct: it has no paths and no samples";
     for (const char* name : {skip::kBounces, skip::kBlackPaths, skip::kUnseenEmitters, skip::kConvergedPoints}) {
       decisions.Add(name, false, "", reason);
@@ -94,7 +90,6 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
                                    ": no shadow tests there";
   decisions.Add(skip::kVisibility, nothing_blocks || ways.clear > 0, nothing_blocks ? nothing_reason : clear_reason,
                 "curves may block each other");
-  decisions.Add(skip::kDerivatives, false, "", "path tracing gives none");
   const bool none_asked = settings.max_bounces == 0u;
   decisions.Add(skip::kBounces, !none_asked && (traits.max_reflectance == 0 || ways.unlit_reflectors),
                 ways.unlit_reflectors ? "no light comes to what reflects: direct light is all"
@@ -118,8 +113,8 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
 
 const std::vector<std::string>& SkipNames() {
   static const auto& names =
-      *new std::vector<std::string>{skip::kEmission, skip::kColour,     skip::kVisibility,     skip::kDerivatives,
-                                    skip::kBounces,  skip::kBlackPaths, skip::kUnseenEmitters, skip::kConvergedPoints};
+      *new std::vector<std::string>{skip::kEmission,   skip::kColour,         skip::kVisibility,     skip::kBounces,
+                                    skip::kBlackPaths, skip::kUnseenEmitters, skip::kConvergedPoints};
   return names;
 }
 

@@ -15,7 +15,6 @@ namespace skip {
 inline constexpr char kEmission[] = "emission";                 // All light, where nothing emits.
 inline constexpr char kColour[] = "colour";                     // Two of three channels, where all spectra are grey.
 inline constexpr char kVisibility[] = "visibility";             // Shadow tests, where nothing can block.
-inline constexpr char kDerivatives[] = "derivatives";           // Derivatives that nobody asked for.
 inline constexpr char kBounces[] = "bounces";                   // Reflections, where nothing lit reflects.
 inline constexpr char kBlackPaths[] = "black-paths";            // What follows a hit on a black curve.
 inline constexpr char kUnseenEmitters[] = "unseen-emitters";    // Emitters whose light comes to nothing that counts.

@@ -111,7 +111,7 @@ int Run(const std::string& csv, const std::string& only) {
   scenes.push_back({"10,000 lamps", ManyLamps(10'000, 0.5, kPoints)});
   scenes.push_back({"row of 40 rooms", RowOfRooms(40, kPoints)});
   scenes.push_back({"city of 20 houses", City(20, 0.5, kPoints)});
-  scenes.push_back({"1000 segments", BuiltRandomSegments(1000, 0.5, kPoints)});
+  scenes.push_back({"50 segments", BuiltRandomSegments(50, 0.5, kPoints)});
   BenchTable table({"scene", "light", "variance", "ns a path", "rays a path", "per second", "per ray", "z^2"});
   for (const NamedScene& scene : scenes) {
     if (scene.name.find(only) == std::string::npos) continue;

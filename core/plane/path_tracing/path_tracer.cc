@@ -11,11 +11,10 @@
 namespace flatlight {
 namespace {
 
-// Paths lighter than the first play roulette; survivors get the second weight. Above a quarter the first reflections in
-// rooms of ordinary brightness stay free of roulette's noise; with weights kept below a half, a path goes on for no
-// longer than its share of the light is worth.
-constexpr double kRouletteBelow = 0.25;
-constexpr double kSurvivorWeight = 0.5;
+// Paths that are lighter play roulette; survivors get this weight. Rooms of ordinary brightness keep their first
+// reflections free of roulette's noise, and no path goes on for longer than its share of the light is worth. (Measured:
+// docs/sampling.md.)
+constexpr double kLeastWeight = 0.2;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Weight of the first of two techniques.
@@ -159,8 +158,8 @@ void PathTracer::AddPathOf(const Start& start, const SampleStream& stream, std::
     for (std::size_t c = 0; c < kChannels; ++c) weight[c] *= surface.reflectance.value[c];
     const double largest = Largest<kChannels>(weight);
     if (largest == 0 && options_.end_black_paths) break;
-    if (largest < kRouletteBelow) {
-      const double survival = largest == 0 ? kSurvivorWeight : largest / kSurvivorWeight;
+    if (largest < kLeastWeight) {
+      const double survival = largest == 0 ? 0.5 : largest / kLeastWeight;
       if (stream.Single(index, depth) >= survival) break;
       for (double& w : weight) w /= survival;
     }

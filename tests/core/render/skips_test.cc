@@ -39,8 +39,6 @@ TEST(SkipsTest, EverySkipLeavesTheSameBits) {
   direct.max_bounces = 0;
   Settings exact;
   exact.max_bounces = 0;
-  Settings exact_value = exact;
-  exact_value.derivatives = Derivatives::kNone;
   SceneMaker dark;
   dark.Segment("floor", {0, 0}, {1, 0}, {.reflectance = {0.5}}).Probe("floor", 3);
   SceneMaker black = UnitLight();
@@ -77,7 +75,6 @@ TEST(SkipsTest, EverySkipLeavesTheSameBits) {
       {"convex", convex.Build(), Sampled(64), skip::kVisibility},
       {"facing", facing.Build(), direct, skip::kVisibility},
       {"facing exact", facing.Build(), exact, skip::kVisibility},
-      {"no derivatives", grey.Build(), exact_value, skip::kDerivatives},
       {"black", black.Build(), Sampled(64), skip::kBounces},
       {"white lamp over black", white_lamp.Build(), Sampled(64), skip::kBounces},
       {"partly black", partly_black.Build(), Sampled(64), skip::kBlackPaths},

@@ -73,7 +73,7 @@ TEST(DirectLightTest, AgreesWithClosedFormWhereEmittersAreWeighed) {
   EXPECT_LT(errors.MeanSquareZ(), 1.3);
 }
 
-TEST(DirectLightTest, AgreesWithClosedFormWhereEmittersAreChosenByPower) {
+TEST(DirectLightTest, AgreesWithClosedFormWhereATreeChoosesEmitters) {
   HonestErrors errors;
   Compare(25, 50, 1, errors);
   EXPECT_TRUE(errors.Unbiased()) << errors.MeanZ();
