@@ -26,13 +26,18 @@ PointBlocks::PointBlocks(const PointSampler& sampler, std::size_t points)
       channels_(sampler.channels()),
       trees_(points, BlockTree(Width())),
       doubts_(points * sampler.channels()),
-      ranges_(points * 2 * sampler.channels()) {}
+      ranges_(points * 2 * sampler.channels()),
+      variances_(points * 2 * sampler.channels()) {}
 
-double PointBlocks::SampleVariance(std::size_t point, std::size_t half, std::size_t channel) const {
+void PointBlocks::UpdateVariances(std::size_t point) {
   const double samples = static_cast<double>(blocks(point)) * kHalfReplicates;
-  const double mean = trees_[point].Total(MomentColumn(half, channel)) / samples;
-  const double square = trees_[point].Total(MomentColumn(half, channel) + 1) / samples;
-  return std::max(square - mean * mean, 0.0);
+  for (std::size_t half = 0; half < 2; ++half) {
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const double mean = trees_[point].Total(MomentColumn(half, c)) / samples;
+      const double square = trees_[point].Total(MomentColumn(half, c) + 1) / samples;
+      variances_[(point * 2 + half) * channels_ + c] = std::max(square - mean * mean, 0.0);
+    }
+  }
 }
 
 MeanEstimate PointBlocks::Estimate(std::size_t point, std::size_t channel, Halves halves,
@@ -163,6 +168,7 @@ bool PointBlocks::Merge(const std::vector<Shard>& shards) {
       for (std::size_t k = 0; k < 2 * channels_; ++k) {
         ranges_[piece.point * 2 * channels_ + k].Add(shard.ranges[i * 2 * channels_ + k]);
       }
+      UpdateVariances(piece.point);
       total_blocks_ += std::ldexp(1.0, static_cast<int>(piece.level));
     }
   }

@@ -42,7 +42,9 @@ class PointBlocks {
   }
 
   // The variance of a single sample, whatever its replicate, as those of one half tell it.
-  double SampleVariance(std::size_t point, std::size_t half, std::size_t channel) const;
+  double SampleVariance(std::size_t point, std::size_t half, std::size_t channel) const {
+    return variances_[(point * 2 + half) * channels_ + channel];
+  }
 
   // The halves [first, last) of the replicates.
   struct Halves {
@@ -82,6 +84,8 @@ class PointBlocks {
 
   Shard CutShard(Cursor& cursor) const;
   void Work(Shard& shard, const Cancellation& cancellation) const;
+  // Brings variances_ up to the blocks of a point.
+  void UpdateVariances(std::size_t point);
   // True if everything was complete.
   bool Merge(const std::vector<Shard>& shards);
 
@@ -98,6 +102,7 @@ class PointBlocks {
   std::size_t first_open_ = 0;               // No point before it is short of its goal.
   std::vector<PointSampler::Doubt> doubts_;  // Point, then channel.
   std::vector<SampleRange> ranges_;          // Point, then half, then channel.
+  std::vector<double> variances_;            // Likewise.
   double total_blocks_ = 0;
   double rays_ = 0;
   // How to cut work: measured, without influence on sums.
