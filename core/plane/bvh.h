@@ -24,6 +24,9 @@ struct BvhFrame {
   Point2 center;
   double size = 1;  // A power of two.
   double inverse_size = 1;
+
+  Point2 ToScene(Point2 p) const { return {center.x + size * p.x, center.y + size * p.y}; }
+  Box ToScene(const Box& box) const { return {ToScene(box.low), ToScene(box.high)}; }
 };
 
 struct alignas(64) BvhNode {

@@ -21,13 +21,6 @@ bool SamePlace(const Element& l, const Element& r) {
          l.radial_b == r.radial_b && l.sweep_angle == r.sweep_angle;
 }
 
-Box ToScene(const BvhFrame& frame, const Box& box) {
-  const auto to_scene = [&](Point2 p) {
-    return Point2{frame.center.x + frame.size * p.x, frame.center.y + frame.size * p.y};
-  };
-  return {to_scene(box.low), to_scene(box.high)};
-}
-
 bool Encloses(const Box& outer, const Box& inner) {
   return outer.low.x <= inner.low.x && outer.low.y <= inner.low.y && outer.high.x >= inner.high.x &&
          outer.high.y >= inner.high.y;
@@ -66,7 +59,7 @@ bool Bvh::RefitNodes(const Scene& scene, const std::vector<char>& changed) {
       frame_of[node.first] = node.frame;
     } else if (node.kind == BvhNode::Kind::kInner) {
       for (int lane = 0; lane < node.count; ++lane) {
-        boxes[node.first + static_cast<std::uint32_t>(lane)] = ToScene(frames_[frame_of[n]], node.BoxOfLane(lane));
+        boxes[node.first + static_cast<std::uint32_t>(lane)] = frames_[frame_of[n]].ToScene(node.BoxOfLane(lane));
         frame_of[node.first + static_cast<std::uint32_t>(lane)] = frame_of[n];
       }
     }

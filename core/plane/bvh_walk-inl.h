@@ -21,26 +21,12 @@
 
 #include "core/math/tolerances.h"
 #include "core/plane/bvh.h"
+#include "core/plane/node_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace flatlight {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, BvhNode::kWidth>;
-using Integers = hn::Rebind<std::int32_t, Floats>;
-inline constexpr std::size_t kLanes = hn::MaxLanes(Floats());  // At once: 8 are a node; 4, or 1.
-
-// Numbers of the grid as floats.
-HWY_INLINE hn::Vec<Floats> LoadNumbers(const std::uint8_t* numbers) {
-  return hn::ConvertTo(Floats(), hn::PromoteTo(Integers(), hn::Load(hn::Rebind<std::uint8_t, Floats>(), numbers)));
-}
-
-HWY_INLINE unsigned BitsOf(hn::Mask<Floats> mask) {
-  std::uint8_t bits[8];
-  hn::StoreMaskBits(Floats(), mask, bits);
-  return bits[0];
-}
 
 HWY_INLINE unsigned FirstBit(unsigned bits) { return static_cast<unsigned>(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits)); }
 

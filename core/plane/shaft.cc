@@ -135,10 +135,6 @@ bool Hides(const Element& segment, const Corners& from, const Corners& to, doubl
   return true;
 }
 
-Point2 InScene(Point2 p, const BvhFrame& frame) {
-  return {frame.center.x + frame.size * p.x, frame.center.y + frame.size * p.y};
-}
-
 }  // namespace
 
 Corners CornersOf(Point2 point) {
@@ -198,8 +194,7 @@ Passage PassageBetween(const Scene& scene, const Bvh& bvh, const Corners& from, 
     for (int lane = 0; lane < node.count; ++lane) {
       const std::uint32_t place = node.first + static_cast<std::uint32_t>(lane);
       if (node.kind != BvhNode::Kind::kEnds) {
-        const Box box = node.BoxOfLane(lane);
-        if (shaft.Misses(Box{InScene(box.low, frame), InScene(box.high, frame)}, margin)) continue;
+        if (shaft.Misses(frame.ToScene(node.BoxOfLane(lane)), margin)) continue;
       }
       if (node.kind == BvhNode::Kind::kInner) {
         stack[size++] = {place, entry.frame};

@@ -18,21 +18,13 @@
 #include "core/math/vec.h"
 #include "core/plane/bvh.h"
 #include "core/plane/exact/sectors.h"
+#include "core/plane/node_lanes-inl.h"
 #include "core/scene/scene.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace flatlight {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, BvhNode::kWidth>;
-
-// Numbers of the grid as floats.
-inline hn::Vec<Floats> LoadNumbers(const std::uint8_t* numbers) {
-  const Floats floats;
-  const hn::Rebind<std::int32_t, Floats> integers;
-  return hn::ConvertTo(floats, hn::PromoteTo(integers, hn::Load(hn::Rebind<std::uint8_t, Floats>(), numbers)));
-}
 
 // Bounds on what may be seen of a node's lanes.
 struct LaneViews {
@@ -70,7 +62,7 @@ class Viewer {
     if (!(std::abs(x) + std::abs(y) < kFarthest)) return ViewAll(node, views);
     const bool ends = node.kind == BvhNode::Kind::kEnds;
     unsigned above = 0;
-    for (std::size_t lane = 0; lane < BvhNode::kWidth; lane += hn::Lanes(Floats()))
+    for (std::size_t lane = 0; lane < BvhNode::kWidth; lane += kLanes)
       above |= (ends ? ViewEnds(node, lane, x, y, slack, step_squared, views)
                      : ViewBoxes(node, lane, x, y, slack, step_squared, views))
                << lane;
@@ -159,7 +151,7 @@ class Viewer {
   HWY_INLINE unsigned StoreKeys(std::size_t lane, Vec low, Vec high, Vec left, Vec right, Vec lowest, Vec highest,
                                 Vec doubt, LaneViews& views) const {
     const Floats f;
-    const hn::Rebind<std::int32_t, Floats> integers;
+    const Integers integers;
     const auto zero = hn::Zero(f), one = hn::Set(f, 1);
     // Cut by the horizon: everything up to the horizon on the sides it reaches.
     const auto cut = hn::Le(lowest, doubt);
@@ -170,9 +162,7 @@ class Viewer {
     const auto bins = hn::Mul(hn::Add(low, one), hn::Set(f, Sectors::kBinsPerKey));
     const auto last_bin = hn::Set(f, static_cast<float>(Sectors::kBins - 1));
     hn::Store(hn::ConvertTo(integers, hn::Min(hn::Max(bins, zero), last_bin)), integers, views.bin + lane);
-    std::uint8_t bits[8];
-    hn::StoreMaskBits(f, hn::Ge(hn::Add(highest, doubt), zero), bits);
-    return bits[0];
+    return BitsOf(hn::Ge(hn::Add(highest, doubt), zero));
   }
 
   static constexpr float kTiny = 1e-30f;
