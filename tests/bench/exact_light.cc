@@ -12,6 +12,7 @@
 #include "core/plane/exact/exact.h"
 #include "core/scene/scene.h"
 #include "tests/bench/light_scenes.h"
+#include "tests/bench/random_scenes.h"
 
 namespace flatlight {
 namespace {

@@ -2,13 +2,11 @@
 #include "tests/bench/light_scenes.h"
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <utility>
 
-#include "core/scene/diagnostic.h"
 #include "tests/bench/random_scenes.h"
 
 namespace flatlight {
@@ -110,16 +108,6 @@ SceneDescription Passage(int rooms, std::uint32_t points) {
     }
   }
   AddCurveProbe(scene, 0, points);
-  return scene;
-}
-
-std::shared_ptr<const Scene> Built(const SceneDescription& description) {
-  Diagnostics diagnostics;
-  std::shared_ptr<const Scene> scene = BuildScene(description, diagnostics);
-  if (!scene) {
-    std::fprintf(stderr, "%s: %s\n", diagnostics.kept()[0].path.c_str(), diagnostics.kept()[0].message.c_str());
-    std::abort();
-  }
   return scene;
 }
 

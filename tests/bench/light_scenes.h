@@ -4,11 +4,8 @@
 #define FLATLIGHT_TESTS_BENCH_LIGHT_SCENES_H_
 
 #include <cstdint>
-#include <memory>
-#include <string>
 
 #include "core/scene/description.h"
-#include "core/scene/scene.h"
 
 namespace flatlight {
 
@@ -25,9 +22,6 @@ SceneDescription Town(int houses_a_side, std::uint32_t points);
 
 // A passage that winds through `walls` rooms, each seen through a door from the next: what is far is hidden.
 SceneDescription Passage(int rooms, std::uint32_t points);
-
-// Ends the program if the scene cannot be built.
-std::shared_ptr<const Scene> Built(const SceneDescription& description);
 
 }  // namespace flatlight
 

@@ -64,13 +64,6 @@ class Maker {
 
 }  // namespace
 
-std::shared_ptr<const Scene> Built(const SceneDescription& description) {
-  Diagnostics diagnostics;
-  std::shared_ptr<const Scene> scene = BuildScene(description, diagnostics);
-  if (!scene) Stop(diagnostics);
-  return scene;
-}
-
 std::vector<NamedScene> GalleryScenes(std::uint32_t points) {
   std::vector<NamedScene> scenes;
   for (const GalleryScene& from : Gallery()) {

@@ -35,9 +35,6 @@ std::shared_ptr<const Scene> HalfBlackRoom(std::uint32_t points);
 // Curves that reflect, and no lamp.
 std::shared_ptr<const Scene> NoLamp(std::uint32_t points);
 
-// Built of a description. Ends the program if it has mistakes.
-std::shared_ptr<const Scene> Built(const SceneDescription& description);
-
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_TESTS_BENCH_NAMED_SCENES_H_

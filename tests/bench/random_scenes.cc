@@ -34,14 +34,18 @@ SceneDescription RandomSegments(int count, double reflectance, std::uint32_t pro
   return scene;
 }
 
-std::shared_ptr<const Scene> BuiltRandomSegments(int count, double reflectance, std::uint32_t probe_points) {
+std::shared_ptr<const Scene> Built(const SceneDescription& description) {
   Diagnostics diagnostics;
-  std::shared_ptr<const Scene> scene = BuildScene(RandomSegments(count, reflectance, probe_points), diagnostics);
+  std::shared_ptr<const Scene> scene = BuildScene(description, diagnostics);
   if (!scene) {
     std::fprintf(stderr, "%s: %s\n", diagnostics.kept()[0].path.c_str(), diagnostics.kept()[0].message.c_str());
     std::abort();
   }
   return scene;
+}
+
+std::shared_ptr<const Scene> BuiltRandomSegments(int count, double reflectance, std::uint32_t probe_points) {
+  return Built(RandomSegments(count, reflectance, probe_points));
 }
 
 }  // namespace flatlight

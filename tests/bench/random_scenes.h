@@ -26,7 +26,10 @@ class RandomNumbers {
 // 1 / sqrt(count)) that the share of light that passes depends little on their number. Requires count >= 1.
 SceneDescription RandomSegments(int count, double reflectance, std::uint32_t probe_points);
 
-// The same, built. Ends the program if it cannot be built.
+// Ends the program if the scene cannot be built.
+std::shared_ptr<const Scene> Built(const SceneDescription& description);
+
+// Random segments, built.
 std::shared_ptr<const Scene> BuiltRandomSegments(int count, double reflectance, std::uint32_t probe_points);
 
 }  // namespace flatlight

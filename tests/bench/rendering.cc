@@ -5,8 +5,6 @@
 #include <benchmark/benchmark.h>
 
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <memory>
 
 #include "core/execution/cancellation.h"
@@ -14,9 +12,9 @@
 #include "core/execution/executor.h"
 #include "core/render/plan.h"
 #include "core/render/settings.h"
-#include "core/scene/diagnostic.h"
 #include "core/scene/scene.h"
 #include "tests/bench/random_scenes.h"
+#include "tests/support/transport/render.h"
 
 namespace flatlight {
 namespace {
@@ -25,18 +23,13 @@ constexpr std::uint32_t kPoints = 64;
 
 void Render(benchmark::State& state, const std::shared_ptr<const Scene>& scene, const Settings& settings,
             double items) {
-  Diagnostics diagnostics;
-  const std::optional<Plan> plan = MakePlan(*scene, settings, diagnostics);
-  if (!plan) {
-    std::fprintf(stderr, "%s: %s\n", diagnostics.kept()[0].path.c_str(), diagnostics.kept()[0].message.c_str());
-    std::abort();
-  }
+  const Plan plan = PlanFor(*scene, settings);
   InlineExecutor executor;
   const Cancellation cancellation;
   const SteadyClock clock;
   double rays = 0;
   for (auto _ : state) {
-    const std::unique_ptr<Rendering> rendering = StartRendering(scene, *plan);
+    const std::unique_ptr<Rendering> rendering = StartRendering(scene, plan);
     while (!rendering->done()) rendering->Advance(executor, cancellation, clock, std::chrono::seconds(1));
     rays += rendering->Progress().rays;
   }

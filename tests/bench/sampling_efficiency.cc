@@ -11,21 +11,19 @@
 // taken off. Efficiencies are per second, and per ray: twice as much means the same error in half the time. To compare
 // two versions, run both by turns: the variances are the same each time, the times are medians.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include "core/execution/cancellation.h"
-#include "core/execution/clock.h"
 #include "core/execution/executor.h"
 #include "core/execution/thread_pool.h"
-#include "core/render/plan.h"
-#include "core/render/rendering.h"
+#include "core/render/field.h"
+#include "core/render/settings.h"
 #include "tests/bench/bench_report.h"
 #include "tests/bench/named_scenes.h"
 #include "tests/bench/random_scenes.h"
+#include "tests/support/transport/render.h"
 
 namespace flatlight {
 namespace {
@@ -35,18 +33,6 @@ constexpr std::uint32_t kSamples = 256;
 constexpr std::uint32_t kTruthSamples = 1 << 16;
 constexpr std::uint32_t kTruthSeed = 1'000'000;
 constexpr std::uint32_t kSeeds = 24;
-
-std::shared_ptr<const Field> Render(const std::shared_ptr<const Scene>& scene, const Settings& settings,
-                                    Executor& executor) {
-  Diagnostics diagnostics;
-  const std::optional<Plan> plan = MakePlan(*scene, settings, diagnostics);
-  if (!plan) std::exit(2);
-  const Cancellation never;
-  const SteadyClock clock;
-  const std::unique_ptr<Rendering> rendering = StartRendering(scene, *plan);
-  while (!rendering->done()) rendering->Advance(executor, never, clock, std::chrono::hours(1));
-  return rendering->Snapshot();
-}
 
 struct Case {
   NamedScene scene;
@@ -64,7 +50,7 @@ void Measure(const Case& c, BenchTable& table) {
     settings.samples = kTruthSamples;
     settings.seed = kTruthSeed;
   }
-  const std::shared_ptr<const Field> truth = Render(c.scene.scene, settings, pool);
+  const std::shared_ptr<const Field> truth = Render(c.scene.scene, settings, pool).field;
   settings.method = Method::kPathTracing;
   settings.samples = kSamples;
   InlineExecutor executor;
@@ -73,7 +59,7 @@ void Measure(const Case& c, BenchTable& table) {
   for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
     settings.seed = seed;
     const double start = ThreadSeconds();
-    const std::shared_ptr<const Field> field = Render(c.scene.scene, settings, executor);
+    const std::shared_ptr<const Field> field = Render(c.scene.scene, settings, executor).field;
     seconds.push_back(ThreadSeconds() - start);
     rays += field->rays;
     for (std::size_t p = 0; p < field->probes.size(); ++p) {

@@ -12,7 +12,6 @@
 #include <cstring>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +23,7 @@
 #include "tests/bench/bench_report.h"
 #include "tests/bench/named_scenes.h"
 #include "tests/bench/random_scenes.h"
+#include "tests/support/transport/render.h"
 
 namespace flatlight {
 namespace {
@@ -38,16 +38,6 @@ struct Rendered {
   std::shared_ptr<const Field> field;
   double seconds = 0;
 };
-
-Plan PlanOf(const Scene& scene, const Settings& settings) {
-  Diagnostics diagnostics;
-  std::optional<Plan> plan = MakePlan(scene, settings, diagnostics);
-  if (!plan) {
-    std::fprintf(stderr, "%s: %s\n", diagnostics.kept()[0].path.c_str(), diagnostics.kept()[0].message.c_str());
-    std::exit(2);
-  }
-  return *plan;
-}
 
 Rendered RenderTimes(const std::shared_ptr<const Scene>& scene, const Plan& plan, int times) {
   InlineExecutor executor;
@@ -122,8 +112,8 @@ class SkipBench {
   void Measure(const NamedScene& scene, const NamedSettings& settings, const std::string& skip) {
     Settings all = settings.settings;
     all.no_skip = {skip};
-    const Plan with = PlanOf(*scene.scene, settings.settings);
-    const Plan without = PlanOf(*scene.scene, all);
+    const Plan with = PlanFor(*scene.scene, settings.settings);
+    const Plan without = PlanFor(*scene.scene, all);
     const Rendered first = RenderTimes(scene.scene, with, 1);
     const int times = std::max(1, static_cast<int>(kLeastSeconds / std::max(first.seconds, 1e-6)));
     std::vector<double> ratios, seconds_with, seconds_without;
@@ -216,7 +206,7 @@ void MeasurePlanning(const std::string& csv) {
       std::vector<double> milliseconds;
       for (int turn = 0; turn < kPlanTurns; ++turn) {
         const double start = ThreadSeconds();
-        PlanOf(*scene.scene, settings.settings);
+        PlanFor(*scene.scene, settings.settings);
         milliseconds.push_back(1e3 * (ThreadSeconds() - start));
       }
       const Quartiles quartiles = QuartilesOf(milliseconds);
@@ -240,7 +230,7 @@ int Run(const std::string& csv) {
   SkipBench bench;
   for (const NamedScene& scene : scenes) {
     for (const NamedSettings& settings : AllSettings()) {
-      const Plan plan = PlanOf(*scene.scene, settings.settings);
+      const Plan plan = PlanFor(*scene.scene, settings.settings);
       for (const SkipEntry& entry : plan.skips) {
         // In the dark nothing is left that another skip could save.
         if (plan.Takes(skip::kEmission) && entry.name != skip::kEmission) continue;

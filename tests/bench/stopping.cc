@@ -7,20 +7,18 @@
 // (value - truth) / error, the error being the stated one and the truth's own in quadrature: honest errors give a mean
 // of 0 and a mean square of 1.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include "core/execution/cancellation.h"
-#include "core/execution/clock.h"
 #include "core/execution/thread_pool.h"
-#include "core/render/plan.h"
-#include "core/render/rendering.h"
+#include "core/render/field.h"
+#include "core/render/settings.h"
 #include "tests/bench/bench_report.h"
 #include "tests/bench/named_scenes.h"
 #include "tests/bench/random_scenes.h"
+#include "tests/support/transport/render.h"
 
 namespace flatlight {
 namespace {
@@ -28,18 +26,6 @@ namespace {
 constexpr std::uint32_t kPoints = 12;
 constexpr std::uint32_t kTruthSamples = 1 << 16;
 constexpr std::uint32_t kTruthSeed = 1'000'000;
-
-std::shared_ptr<const Field> Render(const std::shared_ptr<const Scene>& scene, const Settings& settings) {
-  Diagnostics diagnostics;
-  const std::optional<Plan> plan = MakePlan(*scene, settings, diagnostics);
-  if (!plan) std::exit(2);
-  ThreadPool pool(ThreadPool::AvailableProcessors());
-  const Cancellation never;
-  const SteadyClock clock;
-  const std::unique_ptr<Rendering> rendering = StartRendering(scene, *plan);
-  while (!rendering->done()) rendering->Advance(pool, never, clock, std::chrono::hours(1));
-  return rendering->Snapshot();
-}
 
 struct Case {
   NamedScene scene;
@@ -52,14 +38,14 @@ void Measure(const Case& c, BenchTable& table) {
   settings.method = Method::kPathTracing;
   settings.samples = kTruthSamples;
   settings.seed = kTruthSeed;
-  const std::shared_ptr<const Field> truth = Render(c.scene.scene, settings);
+  const std::shared_ptr<const Field> truth = Render(c.scene.scene, settings, ThreadPool::AvailableProcessors()).field;
   settings.samples.reset();
   settings.target_error = c.target;
   double values = 0, z_sum = 0, z_squares = 0, z_fourth = 0, largest = 0, samples = 0, points = 0, bias = 0, most = 0;
   double error_squares = 0;
   for (std::uint32_t seed = 0; seed < c.runs; ++seed) {
     settings.seed = seed;
-    const std::shared_ptr<const Field> field = Render(c.scene.scene, settings);
+    const std::shared_ptr<const Field> field = Render(c.scene.scene, settings, ThreadPool::AvailableProcessors()).field;
     for (std::size_t p = 0; p < field->probes.size(); ++p) {
       const ProbeField& a = field->probes[p];
       const ProbeField& b = truth->probes[p];

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/peers/machine.h"
 
-#include <cstdlib>
 #include <ctime>
-#include <fstream>
+
+#include "tests/bench/bench_report.h"
 
 namespace flatlight {
 namespace {
-
-std::string Processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  return "unknown";
-}
 
 std::string VectorUnit() {
 #if defined(__x86_64__)
@@ -40,13 +33,12 @@ std::string Now() {
 }  // namespace
 
 Machine ThisMachine() {
-  const char* commit = std::getenv("FLATLIGHT_COMMIT");
 #ifdef __clang__
   const std::string compiler = __VERSION__;
 #else
   const std::string compiler = std::string("GCC ") + __VERSION__;
 #endif
-  return {Processor(), VectorUnit(), compiler, commit && *commit ? commit : "unknown", Now()};
+  return {MachineName(), VectorUnit(), compiler, CommitName(), Now()};
 }
 
 }  // namespace flatlight

@@ -3,16 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
+
+#include "tests/bench/bench_report.h"
 
 namespace flatlight {
 namespace {
-
-double ProcessorSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 // The items form a ring.
 void Work(const Contestant& contestant, std::size_t items, std::size_t first, std::size_t count) {
@@ -28,20 +23,11 @@ void Work(const Contestant& contestant, std::size_t items, std::size_t first, st
 double SecondsAnItem(const Contestant& contestant, std::size_t items) {
   constexpr double kEnough = 0.004;
   for (std::size_t count = 1;; count *= 2) {
-    const double start = ProcessorSeconds();
+    const double start = ThreadSeconds();
     Work(contestant, items, 0, count);
-    const double seconds = ProcessorSeconds() - start;
+    const double seconds = ThreadSeconds() - start;
     if (seconds > kEnough) return seconds / static_cast<double>(count);
   }
-}
-
-// Linear between the two nearest values.
-double Quantile(std::vector<double> values, double fraction) {
-  std::sort(values.begin(), values.end());
-  const double place = fraction * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
 }  // namespace
@@ -58,16 +44,16 @@ std::vector<Timing> TimeInTurns(const std::vector<Contestant>& contestants, std:
     const std::size_t first = static_cast<std::size_t>(round) * count % items;
     for (std::size_t i = 0; i < contestants.size(); ++i) {
       Work(contestants[i], items, first + (items - warm % items), warm);
-      const double start = ProcessorSeconds();
+      const double start = ThreadSeconds();
       Work(contestants[i], items, first, count);
-      rates[i].push_back(static_cast<double>(count) / (ProcessorSeconds() - start));
+      rates[i].push_back(static_cast<double>(count) / (ThreadSeconds() - start));
       ratios[i].push_back(rates[0].back() / rates[i].back());
     }
   }
   std::vector<Timing> timings;
   for (std::size_t i = 0; i < contestants.size(); ++i) {
-    timings.push_back(
-        {Quantile(rates[i], 0.5), Quantile(ratios[i], 0.5), Quantile(ratios[i], 0.25), Quantile(ratios[i], 0.75)});
+    const Quartiles ratio = QuartilesOf(ratios[i]);
+    timings.push_back({QuartilesOf(rates[i]).median, ratio.median, ratio.lower, ratio.upper});
   }
   return timings;
 }

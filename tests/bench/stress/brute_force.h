@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray caster must answer, bit for bit, by looking at every element; and direct irradiance from such rays.
+// Direct irradiance from rays that look at every element.
 #ifndef FLATLIGHT_TESTS_BENCH_STRESS_BRUTE_FORCE_H_
 #define FLATLIGHT_TESTS_BENCH_STRESS_BRUTE_FORCE_H_
 
-#include <optional>
-
-#include "core/plane/ray_caster.h"
 #include "core/scene/scene.h"
+#include "tests/support/transport/brute_rays.h"
 
 namespace flatlight::stress {
-
-struct BruteHit {
-  double distance = 0;
-  ElementId element = ElementId::kNone;
-};
-
-std::optional<BruteHit> BruteClosestHit(const Scene& scene, const SurfacePoint& from, Vector2 direction);
-bool BruteVisible(const Scene& scene, const SurfacePoint& from, const SurfacePoint& to);
-bool BruteTouches(const Scene& scene, const SurfacePoint& point);
 
 // Rounding beside that of the scene itself.
 struct Disturbance {

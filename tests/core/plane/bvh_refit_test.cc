@@ -10,7 +10,8 @@
 
 #include "core/plane/bvh.h"
 #include "core/plane/ray_caster.h"
-#include "tests/core/plane/brute_force.h"
+#include "tests/core/plane/random_curves.h"
+#include "tests/support/transport/brute_rays.h"
 
 namespace flatlight {
 namespace {
@@ -42,12 +43,12 @@ void ExpectAsBruteForce(const RayCaster& caster, Random& random) {
   for (int i = 0; i < 500; ++i) {
     const SurfacePoint from{random.Point(), ElementId::kNone};
     const Vector2 direction = random.Direction();
-    const BruteForceHit expected = HitByBruteForce(caster.scene(), from, direction);
+    const auto expected = BruteClosestHit(caster.scene(), from, direction);
     const auto hit = caster.ClosestHit(from, direction);
-    ASSERT_EQ(hit.has_value(), std::isfinite(expected.distance));
+    ASSERT_EQ(hit.has_value(), expected.has_value());
     if (!hit) continue;
-    ASSERT_EQ(hit->distance, expected.distance);
-    ASSERT_EQ(hit->element, static_cast<ElementId>(expected.element));
+    ASSERT_EQ(hit->distance, expected->distance);
+    ASSERT_EQ(hit->element, expected->element);
   }
 }
 
@@ -90,9 +91,9 @@ TEST(BvhRefitTest, FollowsEditsOfTinyCurves) {
   for (int i = 0; i < 500; ++i) {
     const SurfacePoint from{random.Point(), ElementId::kNone};
     const Vector2 direction = Point2{0.3, 0.2} + 1e-6 * (random.Point() - Point2{}) - from.position;
-    const BruteForceHit expected = HitByBruteForce(*near, from, direction);
+    const auto expected = BruteClosestHit(*near, from, direction);
     const auto hit = caster.ClosestHit(from, direction);
-    ASSERT_EQ(hit ? hit->distance : INFINITY, expected.distance);
+    ASSERT_EQ(hit ? hit->distance : INFINITY, expected ? expected->distance : INFINITY);
   }
   // Far out of the cluster's own coordinates.
   Move(description.curves.back(), {0.1, 0});

@@ -8,7 +8,8 @@
 #include <string>
 
 #include "core/scene/element_frame.h"
-#include "tests/core/plane/brute_force.h"
+#include "tests/core/plane/random_curves.h"
+#include "tests/support/transport/brute_rays.h"
 
 namespace flatlight {
 namespace {
@@ -47,12 +48,13 @@ TEST(RayCasterTest, TreeAgreesWithBruteForce) {
         } else if (ray % 5 == 0) {
           direction = ray % 10 == 0 ? Vector2{1, 0} : Vector2{0, -1};
         }
-        const auto [distance, expected] = HitByBruteForce(*scene, from, direction);
+        const auto expected = BruteClosestHit(*scene, from, direction);
         const auto hit = caster.ClosestHit(from, direction);
-        ASSERT_EQ(hit.has_value(), std::isfinite(distance));
+        ASSERT_EQ(hit.has_value(), expected.has_value());
         if (!hit) continue;
+        const double distance = expected->distance;
         ASSERT_EQ(hit->distance, distance);
-        ASSERT_EQ(hit->element, static_cast<ElementId>(expected));
+        ASSERT_EQ(hit->element, expected->element);
         // A point just before the hit is visible, the next curve's points behind are not.
         ASSERT_TRUE(caster.Visible(from, {from.position + distance * (1 - 1e-9) * direction, ElementId::kNone}));
         ASSERT_FALSE(caster.Visible(from, {from.position + distance * (1 + 1e-9) * direction, ElementId::kNone}));

@@ -12,7 +12,8 @@
 
 #include "core/plane/ray_caster.h"
 #include "core/scene/element_frame.h"
-#include "tests/core/plane/brute_force.h"
+#include "tests/core/plane/random_curves.h"
+#include "tests/support/transport/brute_rays.h"
 
 namespace flatlight {
 namespace {
@@ -62,13 +63,13 @@ TEST(RayWalkTest, CurvesOfAllSizesAreMetAsByBruteForce) {
     const RayCaster caster(scene);
     int near = 0;
     for (const Ray& ray : RandomRays(*scene, random, 3000)) {
-      const BruteForceHit expected = HitByBruteForce(*scene, ray.from, ray.direction);
+      const auto expected = BruteClosestHit(*scene, ray.from, ray.direction);
       const auto hit = caster.ClosestHit(ray.from, ray.direction);
-      ASSERT_EQ(hit.has_value(), std::isfinite(expected.distance)) << size;
+      ASSERT_EQ(hit.has_value(), expected.has_value()) << size;
       if (!hit) continue;
-      ASSERT_EQ(hit->distance, expected.distance) << size;
-      ASSERT_EQ(hit->element, static_cast<ElementId>(expected.element)) << size;
-      near += expected.element >= 4 ? 1 : 0;
+      ASSERT_EQ(hit->distance, expected->distance) << size;
+      ASSERT_EQ(hit->element, expected->element) << size;
+      near += static_cast<std::uint32_t>(expected->element) >= 4 ? 1 : 0;
     }
     EXPECT_GT(near, 1000) << "rays meet the clusters";
   }
@@ -82,9 +83,9 @@ TEST(RayWalkTest, RaysFromFarAwayMeetTheScene) {
     for (int i = 0; i < 300; ++i) {
       const SurfacePoint from{Point2{} + distance * random.Direction(), ElementId::kNone};
       const Vector2 direction = random.Point() - from.position;
-      const BruteForceHit expected = HitByBruteForce(*scene, from, direction);
+      const auto expected = BruteClosestHit(*scene, from, direction);
       const auto hit = caster.ClosestHit(from, direction);
-      ASSERT_EQ(hit ? hit->distance : INFINITY, expected.distance) << distance;
+      ASSERT_EQ(hit ? hit->distance : INFINITY, expected ? expected->distance : INFINITY) << distance;
     }
   }
 }

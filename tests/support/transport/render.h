@@ -36,14 +36,19 @@ struct Ended {
   EndReason reason = EndReason::kConverged;
 };
 
-inline Ended Render(const std::shared_ptr<const Scene>& scene, const Settings& settings, int threads = 1,
+inline Ended Render(const std::shared_ptr<const Scene>& scene, const Settings& settings, Executor& executor,
                     Clock::Duration budget = kForever) {
   const std::unique_ptr<Rendering> rendering = StartRendering(scene, PlanFor(*scene, settings));
-  ThreadPool pool(threads);
   const SteadyClock clock;
   const Cancellation never;
-  while (!rendering->done()) rendering->Advance(pool, never, clock, budget);
+  while (!rendering->done()) rendering->Advance(executor, never, clock, budget);
   return {rendering->Snapshot(), rendering->end_reason()};
+}
+
+inline Ended Render(const std::shared_ptr<const Scene>& scene, const Settings& settings, int threads = 1,
+                    Clock::Duration budget = kForever) {
+  ThreadPool pool(threads);
+  return Render(scene, settings, pool, budget);
 }
 
 // FNV-1a over the bits of all values.

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes of random curves, and the slow, certain way to cast a ray at them.
-#ifndef FLATLIGHT_TESTS_CORE_PLANE_BRUTE_FORCE_H_
-#define FLATLIGHT_TESTS_CORE_PLANE_BRUTE_FORCE_H_
+// Scenes of random curves.
+#ifndef FLATLIGHT_TESTS_CORE_PLANE_RANDOM_CURVES_H_
+#define FLATLIGHT_TESTS_CORE_PLANE_RANDOM_CURVES_H_
 
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <string>
 
 #include "core/math/vec.h"
-#include "core/plane/intersect.h"
-#include "core/plane/ray_caster.h"
 #include "core/scene/description.h"
 #include "core/scene/diagnostic.h"
 #include "core/scene/scene.h"
@@ -52,30 +49,6 @@ inline std::shared_ptr<const Scene> BuildWithProbe(SceneDescription description)
   return BuildScene(description, diagnostics);
 }
 
-struct BruteForceHit {
-  double distance = std::numeric_limits<double>::infinity();
-  std::uint32_t element = 0;
-};
-
-// Every element, one by one.
-inline BruteForceHit HitByBruteForce(const Scene& scene, const SurfacePoint& from, Vector2 direction) {
-  BruteForceHit hit;
-  for (std::uint32_t e = 0; e < scene.elements().size(); ++e) {
-    const Element& element = scene.elements()[e];
-    const bool own = from.element != ElementId::kNone && scene.element(from.element).carrier == element.carrier;
-    Crossings crossings;
-    if (element.kind == Element::Kind::kSegment) {
-      if (!own) crossings = CrossSegment(element, from.position, direction, scene.touch_distance());
-    } else {
-      crossings = own ? CrossOwnCircle(element, from.position, direction, scene.touch_distance())
-                      : CrossArc(element, from.position, direction, scene.touch_distance());
-    }
-    for (int i = 0; i < crossings.count; ++i)
-      if (crossings.t[i] > 0 && crossings.t[i] < hit.distance) hit = {crossings.t[i], e};
-  }
-  return hit;
-}
-
 }  // namespace flatlight
 
-#endif  // FLATLIGHT_TESTS_CORE_PLANE_BRUTE_FORCE_H_
+#endif  // FLATLIGHT_TESTS_CORE_PLANE_RANDOM_CURVES_H_
