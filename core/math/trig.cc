@@ -57,4 +57,18 @@ SinCosValue SinCos(double angle) {
   }
 }
 
+double AngleOf(double x, double y) {
+  FLATLIGHT_DCHECK(y >= 0 && (x != 0 || y > 0));
+  if (x < 0) return 2 * (kPart1 + (kPart2 + kPart3)) - AngleOf(-x, y);
+  // Halved until small: tan(a/2) = y/(x + r).
+  double tangent = y / (x + std::sqrt(x * x + y * y));
+  constexpr int kHalvings = 3;
+  for (int i = 1; i < kHalvings; ++i) tangent = tangent / (1 + std::sqrt(1 + tangent * tangent));
+  // |tangent| < 0.2: the first term left out is tangent^25/25, below 2e-19 of the angle.
+  const double z = tangent * tangent;
+  double series = 0;
+  for (int k = 23; k >= 3; k -= 2) series = -z * (1.0 / k + series);
+  return (1 << kHalvings) * (tangent + tangent * series);
+}
+
 }  // namespace flatlight

@@ -14,6 +14,9 @@ struct SinCosValue {
 // Method: reduction by multiples of pi/2 held in three parts (Cody and Waite 1980), then Taylor polynomials.
 SinCosValue SinCos(double angle);
 
+// The angle in [0, pi] whose cosine and sine are to each other as x and y, y >= 0, not both 0; to 8e-16 of itself.
+double AngleOf(double x, double y);
+
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_CORE_MATH_TRIG_H_

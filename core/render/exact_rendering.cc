@@ -52,6 +52,7 @@ ExactRendering::ExactRendering(std::shared_ptr<const Scene> scene, std::shared_p
       max_threads_(plan.MaxThreads()),
       points_(PointsOfProbes(*scene_)),
       values_(points_.size()) {
+  if (!dark_ && scene_->traits().lights > 0) lights_.emplace(*caster_, options_);
   if (dark_) done_points_ = points_.size();
 }
 
@@ -89,7 +90,10 @@ void ExactRendering::Advance(Executor& executor, const Cancellation& cancellatio
 bool ExactRendering::Work(std::size_t first, std::size_t last, const Cancellation& cancellation) {
   std::unique_ptr<ExactSolver> solver = TakeSolver();
   std::size_t i = first;
-  for (; i < last && !cancellation.cancelled(); ++i) values_[i] = solver->Evaluate(*points_[i]);
+  for (; i < last && !cancellation.cancelled(); ++i) {
+    values_[i] = solver->Evaluate(*points_[i]);
+    if (lights_) lights_->Add(*points_[i], values_[i]);
+  }
   ReturnSolver(std::move(solver));
   return i == last;
 }

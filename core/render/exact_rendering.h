@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/plane/exact/exact.h"
+#include "core/plane/exact/light_solver.h"
 #include "core/plane/ray_caster.h"
 #include "core/render/rendering.h"
 
@@ -37,8 +38,9 @@ class ExactRendering final : public Rendering {
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const RayCaster> caster_;
   ExactOptions options_;
-  int derivatives_;  // Asked for, whatever is computed.
-  bool dark_;        // Nothing emits: the values are there already.
+  std::optional<LightSolver> lights_;  // If there are any.
+  int derivatives_;                    // Asked for, whatever is computed.
+  bool dark_;                          // Nothing emits: the values are there already.
   int max_threads_;
   std::mutex solvers_mutex_;
   std::vector<std::unique_ptr<ExactSolver>> idle_solvers_;

@@ -78,8 +78,20 @@ std::vector<Point2> HullOfEnds(const std::vector<Element>& elements) {
 
 }  // namespace
 
+bool AllDark(const Scene& scene) {
+  const SceneTraits& traits = scene.traits();
+  return traits.emitting_curves == 0 && traits.lights == 0 && !traits.environment;
+}
+
 bool DirectLightOnly(const Scene& scene, const Settings& settings) {
   return settings.max_bounces == 0u || scene.traits().max_reflectance == 0;
+}
+
+bool HasHiddenCaustics(const Scene& scene) {
+  const std::vector<Curve>& curves = scene.curves();
+  return scene.traits().lights > 0 && std::any_of(curves.begin(), curves.end(), [](const Curve& curve) {
+           return IsSpecular(curve.material) && !curve.reflectance.IsBlack();
+         });
 }
 
 bool NothingBlocks(const Scene& scene) {
@@ -134,6 +146,7 @@ bool LightNeverFades(const Scene& scene) {
   if (!std::all_of(curves.begin(), curves.end(), [](const Curve& c) { return c.reflectance.Max() == 1; })) return false;
   Connections connections;
   for (const Element& element : scene.elements()) {
+    if (std::holds_alternative<Dielectric>(scene.curve(element.curve).material)) continue;
     if (!connections.Connect(element.a, element.b)) return true;
   }
   return false;

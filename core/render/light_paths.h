@@ -8,8 +8,14 @@
 
 namespace flatlight {
 
+// Nothing shines.
+bool AllDark(const Scene& scene);
+
 // Nothing reflects, or no reflection is wanted.
 bool DirectLightOnly(const Scene& scene, const Settings& settings);
+
+// Lights without a surface shine where mirrors or glass pass their light on: no path from a receiver finds it there.
+bool HasHiddenCaustics(const Scene& scene);
 
 // Whether it is certain that no curve stands between any two points of curves and probes that see each other's sides:
 // each straight piece has all other pieces and all points in one of its closed half planes (a convex room, facing
@@ -17,8 +23,8 @@ bool DirectLightOnly(const Scene& scene, const Settings& settings);
 // where there are arcs, or many free points near many pieces.
 bool NothingBlocks(const Scene& scene);
 
-// Whether every curve reflects all light of some channel and curves form a closed loop: in it light would never fade,
-// and a path never end.
+// Whether every curve keeps all light of some channel and curves that nothing crosses form a closed loop: in it light
+// would never fade, and a path never end.
 bool LightNeverFades(const Scene& scene);
 
 }  // namespace flatlight

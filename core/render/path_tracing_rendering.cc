@@ -119,7 +119,8 @@ std::unique_ptr<const PointSampler> MakeSampler(std::shared_ptr<const Scene> sce
   options.nothing_blocks = NothingBlocks(*scene);
   options.end_black_paths = plan.Takes(skip::kBlackPaths);
   const EmitterReach reach = ReachOfEmitters(*scene);
-  options.nothing_reflects = !reach.LightsReflectors();
+  const SceneTraits& traits = scene->traits();
+  options.nothing_reflects = traits.lights == 0 && !traits.environment && !reach.LightsReflectors();
   if (plan.Takes(skip::kUnseenEmitters)) {
     const bool direct = DirectLightOnly(*scene, plan.settings);
     for (const EmitterReach::Piece& piece : reach.pieces)

@@ -71,6 +71,11 @@ void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diag
   if (settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone) {
     diagnostics.Add("settings.derivatives", "path-tracing gives none: leave this out, or use exact");
   }
+  if (!DirectLightOnly(scene, settings) && HasHiddenCaustics(scene)) {
+    diagnostics.Add("settings.method",
+                    "path-tracing cannot find the light that plane.lights send over mirrors and glass: set max bounces "
+                    "to 0, or give the light a surface, a small arc that emits");
+  }
   if (!settings.max_bounces.has_value() && LightNeverFades(scene)) {
     diagnostics.Add(
         "settings.maxBounces",

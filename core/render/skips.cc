@@ -21,7 +21,9 @@ bool IsGiven(const Settings& settings, const char* name) {
 struct LightWays {
   LightWays(const Scene& scene, bool direct) {
     const EmitterReach reach = ReachOfEmitters(scene);
-    unlit_reflectors = scene.traits().max_reflectance > 0 && !reach.LightsReflectors();
+    const SceneTraits& traits = scene.traits();
+    unlit_reflectors =
+        traits.max_reflectance > 0 && traits.lights == 0 && !traits.environment && !reach.LightsReflectors();
     weighed = reach.pieces.size() <= EmitterSampler::kMostWeighed;
     if (!weighed) return;
     known = reach.ways;
@@ -69,14 +71,17 @@ class Decisions {
 std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings) {
   const SceneTraits& traits = scene.traits();
   Decisions decisions(settings);
-  decisions.Add(skip::kEmission, traits.emitting_curves == 0, "nothing emits: all is dark",
-                Counted(traits.emitting_curves, "curve emits", "curves emit"));
+  decisions.Add(skip::kEmission, AllDark(scene), "nothing emits: all is dark",
+                traits.emitting_curves > 0 ? Counted(traits.emitting_curves, "curve emits", "curves emit")
+                : traits.lights > 0        ? Counted(traits.lights, "light shines", "lights shine")
+                                           : "the environment shines");
   decisions.Add(skip::kColour, traits.grey, "all spectra are grey: one channel is computed",
                 "some spectra are coloured");
   const bool nothing_blocks = NothingBlocks(scene);
   const std::string nothing_reason = "nothing can stand between two points: blockers are not looked for";
   if (settings.method == Method::kExact) {
-    decisions.Add(skip::kVisibility, nothing_blocks, nothing_reason, "curves may block each other");
+    decisions.Add(skip::kVisibility, nothing_blocks && !traits.environment, nothing_reason,
+                  nothing_blocks ? "curves block the environment" : "curves may block each other");
     const std::string reason = "exact light is direct: it has no paths and no samples";
     for (const char* name : {skip::kBounces, skip::kBlackPaths, skip::kUnseenEmitters, skip::kConvergedPoints}) {
       decisions.Add(name, false, "", reason);

@@ -24,6 +24,46 @@ Spectrum ToSpectrum(const SpectrumValues& values) {
   return values.size() == 1 ? Spectrum::Grey(values[0]) : Spectrum{{values[0], values[1], values[2]}};
 }
 
+struct ToMaterial {
+  Material operator()(std::monostate) const { return Lambertian{}; }
+  Material operator()(const LambertianDescription& from) const { return Lambertian{ToSpectrum(from.reflectance)}; }
+  Material operator()(const MirrorDescription& from) const { return Mirror{ToSpectrum(from.reflectance)}; }
+  Material operator()(const DielectricDescription& from) const { return Dielectric{from.ior}; }
+  Material operator()(const PhongDescription& from) const {
+    // cos^0 would stop at pi/2 from the mirror direction (THEORY 17 A5).
+    if (from.exponent == 0) return Lambertian{ToSpectrum(from.reflectance)};
+    return Phong{ToSpectrum(from.reflectance), from.exponent};
+  }
+  Material operator()(const ConductorDescription& from) const {
+    if (from.roughness == 0) return Mirror{ToSpectrum(from.reflectance)};
+    return Conductor{ToSpectrum(from.reflectance), from.roughness * from.roughness};
+  }
+};
+
+// Whether some spectrum has three values.
+struct HasColours {
+  bool operator()(std::monostate) const { return false; }
+  bool operator()(const LambertianDescription& from) const { return from.reflectance.size() == 3; }
+  bool operator()(const MirrorDescription& from) const { return from.reflectance.size() == 3; }
+  bool operator()(const DielectricDescription&) const { return false; }
+  bool operator()(const PhongDescription& from) const { return from.reflectance.size() == 3; }
+  bool operator()(const ConductorDescription& from) const { return from.reflectance.size() == 3; }
+  bool operator()(const PointLightDescription& from) const { return from.power.size() == 3; }
+  bool operator()(const SpotLightDescription& from) const { return from.power.size() == 3; }
+  bool operator()(const DirectionalLightDescription& from) const { return from.irradiance.size() == 3; }
+};
+
+// What counts as radiance when the frame is chosen: the light's irradiance at a distance of `size`.
+struct Brightness {
+  double size;
+  double operator()(std::monostate) const { return 0; }
+  double operator()(const PointLightDescription& light) const { return ToSpectrum(light.power).Max() / size; }
+  double operator()(const SpotLightDescription& light) const {
+    return ToSpectrum(light.power).Max() / (light.cone_angle + light.edge_angle) / size;
+  }
+  double operator()(const DirectionalLightDescription& light) const { return ToSpectrum(light.irradiance).Max(); }
+};
+
 struct Box {
   double low_x = std::numeric_limits<double>::infinity(), low_y = low_x, high_x = -low_x, high_y = -low_x;
   void Add(Point2 p) {
@@ -91,6 +131,7 @@ std::shared_ptr<const Scene> SceneBuilder::Build() {
     while (next < scene_->elements_.size() && static_cast<std::size_t>(scene_->elements_[next].curve) == c) ++next;
     curve.element_count = static_cast<std::uint32_t>(next) - curve.first_element;
   }
+  AddLights();
   AddProbes();
   Summarise();
   return scene_;
@@ -102,6 +143,10 @@ void SceneBuilder::Normalise() {
   if (description_.curves.empty()) {
     for (const ProbeDescription& probe : description_.probes)
       for (const ProbePointDescription& point : probe.points) box.Add(point.position);
+    for (const LightDescription& light : description_.lights) {
+      if (const auto* point = std::get_if<PointLightDescription>(&light.kind)) box.Add(point->position);
+      if (const auto* spot = std::get_if<SpotLightDescription>(&light.kind)) box.Add(spot->position);
+    }
   }
   Frame& frame = scene_->frame_;
   const Point2 middle{0.5 * box.low_x + 0.5 * box.high_x, 0.5 * box.low_y + 0.5 * box.high_y};
@@ -120,7 +165,17 @@ void SceneBuilder::Normalise() {
   for (const CurveDescription& curve : description_.curves) {
     if (curve.emission) radiance = std::max(radiance, ToSpectrum(curve.emission->radiance).Max());
   }
+  for (const LightDescription& light : description_.lights) {
+    radiance = std::max(radiance, std::visit(Brightness{frame.scale}, light.kind));
+  }
+  if (description_.environment) radiance = std::max(radiance, ToSpectrum(description_.environment->radiance).Max());
   frame.radiance_scale = radiance > 0 ? PowerOfTwoAbove(radiance) : 1;
+}
+
+Spectrum SceneBuilder::ToNormalised(const SpectrumValues& values, double unit) const {
+  Spectrum spectrum = ToSpectrum(values);
+  for (double& value : spectrum.value) value /= unit;
+  return spectrum;
 }
 
 Point2 SceneBuilder::ToFrame(Point2 world) {
@@ -144,10 +199,10 @@ void SceneBuilder::AddCurves() {
     const CurveDescription& from = description_.curves[c];
     Curve curve;
     curve.name = from.name;
-    curve.reflectance = ToSpectrum(std::get<LambertianDescription>(materials.at(from.material)->kind).reflectance);
+    curve.material = std::visit(ToMaterial(), materials.at(from.material)->kind);
+    curve.reflectance = LargestAlbedo(curve.material);
     if (from.emission) {
-      const Spectrum radiance = ToSpectrum(from.emission->radiance);
-      for (int i = 0; i < kMaxChannels; ++i) curve.radiance[i] = radiance[i] / scene_->frame_.radiance_scale;
+      curve.radiance = ToNormalised(from.emission->radiance, scene_->frame_.radiance_scale);
       curve.two_sided = from.emission->two_sided;
     }
     first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
@@ -213,6 +268,35 @@ void SceneBuilder::AddArc(std::size_t curve, const ArcDescription& arc) {
   if (LengthSquared(piece.b - piece.a) < 1e-280) {
     diagnostics_.Add("plane.curves[" + std::to_string(curve) + "].arc",
                      "is too short to be told from a point beside the size and place of the whole scene");
+  }
+}
+
+void SceneBuilder::AddLights() {
+  const Frame& frame = scene_->frame_;
+  const auto direction = [](Vector2 v) { return Normalized(v / std::max(std::abs(v.x), std::abs(v.y))); };
+  for (const LightDescription& description : description_.lights) {
+    Light light;
+    light.name = description.name;
+    if (const auto* directional = std::get_if<DirectionalLightDescription>(&description.kind)) {
+      light.kind = DirectionalLight{direction(directional->direction),
+                                    ToNormalised(directional->irradiance, frame.radiance_scale)};
+    } else if (const auto* spot = std::get_if<SpotLightDescription>(&description.kind)) {
+      const double radians = spot->cone_angle + spot->edge_angle;  // As many in the full intensity give the same flux.
+      light.kind =
+          PointLight{ToFrame(spot->position), ToNormalised(spot->power, radians * frame.scale * frame.radiance_scale),
+                     direction(spot->direction), spot->cone_angle, spot->edge_angle};
+    } else {
+      const auto& point = std::get<PointLightDescription>(description.kind);
+      const double unit = 4 * kQuarter * frame.scale * frame.radiance_scale;
+      PointLight all_around;
+      all_around.position = ToFrame(point.position);
+      all_around.intensity = ToNormalised(point.power, unit);
+      light.kind = all_around;
+    }
+    scene_->lights_.push_back(std::move(light));
+  }
+  if (description_.environment) {
+    scene_->environment_ = ToNormalised(description_.environment->radiance, frame.radiance_scale);
   }
 }
 
@@ -301,10 +385,11 @@ void SceneBuilder::AddPointProbe(const ProbeDescription& description, Probe& pro
 void SceneBuilder::Summarise() {
   Scene& scene = *scene_;
   bool colours = false;
-  for (const MaterialDescription& material : description_.materials)
-    colours |= std::get<LambertianDescription>(material.kind).reflectance.size() == 3;
+  for (const MaterialDescription& material : description_.materials) colours |= std::visit(HasColours(), material.kind);
   for (const CurveDescription& curve : description_.curves)
     colours |= curve.emission && curve.emission->radiance.size() == 3;
+  for (const LightDescription& light : description_.lights) colours |= std::visit(HasColours(), light.kind);
+  colours |= description_.environment && description_.environment->radiance.size() == 3;
   scene.channels_ = colours ? 3 : 1;
 
   SceneTraits& traits = scene.traits_;
@@ -314,7 +399,15 @@ void SceneBuilder::Summarise() {
     traits.emitting_curves += curve.Emits() ? 1 : 0;
     traits.max_reflectance = std::max(traits.max_reflectance, curve.reflectance.Max());
     traits.grey = traits.grey && curve.reflectance.IsGrey() && curve.radiance.IsGrey();
+    traits.lambertian &= curve.reflectance.IsBlack() || std::holds_alternative<Lambertian>(curve.material);
   }
+  traits.lights = scene.lights_.size();
+  for (const Light& light : scene.lights_) {
+    const auto* point = std::get_if<PointLight>(&light.kind);
+    traits.grey &= (point ? point->intensity : std::get<DirectionalLight>(light.kind).irradiance).IsGrey();
+  }
+  traits.environment = !scene.environment_.IsBlack();
+  traits.grey &= scene.environment_.IsGrey();
   for (const Element& element : scene.elements_) traits.has_arcs |= element.kind == Element::Kind::kArc;
   // Rounding of receivers, and of the points of arcs, comes on top of the shift's.
   scene.coordinate_error_ += (traits.has_arcs ? 6 : 2) * kUnitRoundoff;

@@ -24,10 +24,12 @@ class SceneBuilder {
   // Chooses the frame: the box around all curves goes to [-1, 1]^2, the largest radiance to [1/2, 1].
   void Normalise();
   Point2 ToFrame(Point2 world);
+  Spectrum ToNormalised(const SpectrumValues& values, double unit) const;
   // Cuts curves into elements, before overlaps are taken out.
   void AddCurves();
   void AddPiece(std::size_t curve, Point2 a, Point2 b);
   void AddArc(std::size_t curve, const ArcDescription& arc);
+  void AddLights();
   void AddProbes();
   void AddCurveProbe(const ProbeDescription& description, Probe& probe) const;
   // The element of a curve at an arc length; kNone where another curve covers it.

@@ -22,9 +22,29 @@ struct LambertianDescription {
   SpectrumValues reflectance;
 };
 
+struct MirrorDescription {
+  SpectrumValues reflectance;
+};
+
+struct DielectricDescription {
+  double ior = 0;
+};
+
+struct PhongDescription {
+  SpectrumValues reflectance;
+  double exponent = 0;
+};
+
+struct ConductorDescription {
+  SpectrumValues reflectance;
+  double roughness = 0;
+};
+
 struct MaterialDescription {
   std::string name;
-  std::variant<std::monostate, LambertianDescription> kind;
+  std::variant<std::monostate, LambertianDescription, MirrorDescription, DielectricDescription, PhongDescription,
+               ConductorDescription>
+      kind;
 };
 
 struct SegmentDescription {
@@ -56,6 +76,33 @@ struct CurveDescription {
   std::optional<EmissionDescription> emission;
 };
 
+struct PointLightDescription {
+  Point2 position;
+  SpectrumValues power;
+};
+
+struct SpotLightDescription {
+  Point2 position;
+  Vector2 direction;
+  SpectrumValues power;
+  double cone_angle = 0;
+  double edge_angle = 0;
+};
+
+struct DirectionalLightDescription {
+  Vector2 direction;
+  SpectrumValues irradiance;
+};
+
+struct LightDescription {
+  std::string name;
+  std::variant<std::monostate, PointLightDescription, SpotLightDescription, DirectionalLightDescription> kind;
+};
+
+struct EnvironmentDescription {
+  SpectrumValues radiance;
+};
+
 struct ProbePointDescription {
   Point2 position;
   Vector2 normal;
@@ -75,6 +122,8 @@ struct SceneDescription {
   std::string name;
   std::vector<MaterialDescription> materials;
   std::vector<CurveDescription> curves;
+  std::vector<LightDescription> lights;
+  std::optional<EnvironmentDescription> environment;
   std::vector<ProbeDescription> probes;
 };
 

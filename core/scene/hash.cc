@@ -61,6 +61,37 @@ void AddShape(const CurveDescription& curve, Hasher& hasher) {
   }
 }
 
+void AddMaterial(const MaterialDescription& material, Hasher& hasher) {
+  const auto& kind = material.kind;
+  hasher.Add(std::uint64_t{kind.index()});
+  if (const auto* lambertian = std::get_if<LambertianDescription>(&kind)) {
+    hasher.Add(lambertian->reflectance);
+  } else if (const auto* mirror = std::get_if<MirrorDescription>(&kind)) {
+    hasher.Add(mirror->reflectance);
+  } else if (const auto* dielectric = std::get_if<DielectricDescription>(&kind)) {
+    hasher.Add(dielectric->ior);
+  } else if (const auto* phong = std::get_if<PhongDescription>(&kind)) {
+    hasher.Add(phong->reflectance), hasher.Add(phong->exponent);
+  } else if (const auto* conductor = std::get_if<ConductorDescription>(&kind)) {
+    hasher.Add(conductor->reflectance), hasher.Add(conductor->roughness);
+  }
+}
+
+void AddLight(const LightDescription& light, Hasher& hasher) {
+  hasher.Add(std::uint64_t{light.kind.index()});
+  if (const auto* point = std::get_if<PointLightDescription>(&light.kind)) {
+    hasher.Add(point->position), hasher.Add(point->power);
+  } else if (const auto* spot = std::get_if<SpotLightDescription>(&light.kind)) {
+    hasher.Add(spot->position), hasher.Add(spot->direction), hasher.Add(spot->power);
+    hasher.Add(spot->cone_angle), hasher.Add(spot->edge_angle);
+  } else if (const auto* directional = std::get_if<DirectionalLightDescription>(&light.kind)) {
+    hasher.Add(directional->direction), hasher.Add(directional->irradiance);
+  }
+}
+
+// What follows is no curve: no shape has this number.
+constexpr std::uint64_t kNoMoreCurves = 1000;
+
 }  // namespace
 
 std::string HashWorld(const SceneDescription& description) {
@@ -69,14 +100,17 @@ std::string HashWorld(const SceneDescription& description) {
   Hasher hasher;
   for (const CurveDescription& curve : description.curves) {
     AddShape(curve, hasher);
-    const auto& kind = materials.at(curve.material)->kind;
-    hasher.Add(std::uint64_t{kind.index()});
-    hasher.Add(std::get<LambertianDescription>(kind).reflectance);
+    AddMaterial(*materials.at(curve.material), hasher);
     hasher.Add(std::uint64_t{curve.emission.has_value()});
     if (curve.emission) {
       hasher.Add(curve.emission->radiance);
       hasher.Add(std::uint64_t{curve.emission->two_sided});
     }
+  }
+  if (!description.lights.empty() || description.environment) {
+    hasher.Add(kNoMoreCurves);
+    for (const LightDescription& light : description.lights) AddLight(light, hasher);
+    if (description.environment) hasher.Add(kNoMoreCurves), hasher.Add(description.environment->radiance);
   }
   return hasher.Hex();
 }

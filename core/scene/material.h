@@ -39,6 +39,11 @@ struct Conductor {
 // The same on both sides of a curve, but for Dielectric.
 using Material = std::variant<Lambertian, Mirror, Dielectric, Phong, Conductor>;
 
+// Whether light leaves in one direction, or two, and not in a fan.
+inline bool IsSpecular(const Material& material) {
+  return std::holds_alternative<Mirror>(material) || std::holds_alternative<Dielectric>(material);
+}
+
 // No direction reflects (and transmits) more.
 Spectrum LargestAlbedo(const Material& material);
 

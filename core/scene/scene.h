@@ -15,6 +15,8 @@
 #include "core/math/vec.h"
 #include "core/scene/description.h"
 #include "core/scene/diagnostic.h"
+#include "core/scene/light.h"
+#include "core/scene/material.h"
 #include "core/scene/spectrum.h"
 
 namespace flatlight {
@@ -48,8 +50,9 @@ struct Element {
 
 struct Curve {
   std::string name;
-  Spectrum reflectance;
-  Spectrum radiance;  // Normalised. Black if the curve does not emit.
+  Material material;
+  Spectrum reflectance;  // No direction reflects (and transmits) more.
+  Spectrum radiance;     // Normalised. Black if the curve does not emit.
   bool two_sided = false;
   std::uint32_t first_element = 0;
   std::uint32_t element_count = 0;
@@ -91,8 +94,11 @@ struct SceneTraits {
   std::size_t elements = 0;
   std::size_t emitting_curves = 0;
   std::size_t probe_points = 0;
+  std::size_t lights = 0;  // Without a surface.
   double max_reflectance = 0;
-  bool grey = true;  // All channels equal everywhere.
+  bool lambertian = true;    // Nothing but Lambertian curves reflects.
+  bool environment = false;  // Light comes from infinitely far away, all around.
+  bool grey = true;          // All channels equal everywhere.
   bool has_arcs = false;
 };
 
@@ -107,6 +113,8 @@ class Scene {
   double touch_distance() const { return touch_distance_; }
   const std::vector<Element>& elements() const { return elements_; }
   const std::vector<Curve>& curves() const { return curves_; }
+  const std::vector<Light>& lights() const { return lights_; }
+  const Spectrum& environment() const { return environment_; }  // Normalised radiance, from all directions.
   const std::vector<Probe>& probes() const { return probes_; }
   const Element& element(ElementId id) const { return elements_[static_cast<std::size_t>(id)]; }
   const Curve& curve(CurveId id) const { return curves_[static_cast<std::size_t>(id)]; }
@@ -129,6 +137,8 @@ class Scene {
   double touch_distance_ = 0;
   std::vector<Element> elements_;
   std::vector<Curve> curves_;
+  std::vector<Light> lights_;
+  Spectrum environment_;
   std::vector<Probe> probes_;
   SceneTraits traits_;
   std::string world_hash_;

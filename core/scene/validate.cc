@@ -77,6 +77,7 @@ class Validator {
         limits_(limits),
         diagnostics_(diagnostics),
         materials_("plane.materials", scene.materials.size(), diagnostics),
+        lights_("plane.lights", scene.lights.size(), diagnostics),
         curves_("plane.curves", std::min(scene.curves.size(), limits.max_curves), diagnostics),
         probes_("probes", scene.probes.size(), diagnostics) {}
 
@@ -92,6 +93,13 @@ class Validator {
       diagnostics_.Add("plane.curves", "have " + std::to_string(elements_) + " pieces; at most " +
                                            std::to_string(limits_.max_elements) + " are allowed");
     }
+    if (scene_.lights.size() > limits_.max_lights) {
+      diagnostics_.Add("plane.lights", "has " + std::to_string(scene_.lights.size()) + " lights; at most " +
+                                           std::to_string(limits_.max_lights) + " are allowed");
+      return;
+    }
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i) CheckLight(i);
+    if (scene_.environment) CheckBrightness(scene_.environment->radiance, "plane.environment.radiance");
     if (scene_.probes.empty()) diagnostics_.Add("probes", "is missing or empty; at least one probe is needed");
     for (std::size_t i = 0; i < scene_.probes.size(); ++i) CheckProbe(i);
     if (probe_points_ > limits_.max_probe_points) {
@@ -131,8 +139,53 @@ class Validator {
     materials_.Add(material.name, index);
     if (const auto* lambertian = std::get_if<LambertianDescription>(&material.kind)) {
       CheckSpectrum(lambertian->reflectance, path + ".lambertian.reflectance", 1, "0 to 1");
+    } else if (const auto* mirror = std::get_if<MirrorDescription>(&material.kind)) {
+      CheckSpectrum(mirror->reflectance, path + ".mirror.reflectance", 1, "0 to 1");
+    } else if (const auto* dielectric = std::get_if<DielectricDescription>(&material.kind)) {
+      CheckRange(dielectric->ior, 0.01, 100, path + ".dielectric.ior");
+    } else if (const auto* phong = std::get_if<PhongDescription>(&material.kind)) {
+      CheckSpectrum(phong->reflectance, path + ".phong.reflectance", 1, "0 to 1");
+      CheckRange(phong->exponent, 0, 1e6, path + ".phong.exponent");
+    } else if (const auto* conductor = std::get_if<ConductorDescription>(&material.kind)) {
+      CheckSpectrum(conductor->reflectance, path + ".conductor.reflectance", 1, "0 to 1");
+      CheckRange(conductor->roughness, 0, 1, path + ".conductor.roughness");
     } else {
-      diagnostics_.Add(path, "has no kind; allowed: lambertian");
+      diagnostics_.Add(path, "has no kind; allowed: lambertian, mirror, dielectric, phong, conductor");
+    }
+  }
+
+  void CheckBrightness(const SpectrumValues& values, const std::string& path) {
+    CheckSpectrum(values, path, limits_.max_radiance, "0 to " + Number(limits_.max_radiance));
+  }
+
+  void CheckDirection(Vector2 direction, const std::string& path) {
+    const bool x = CheckRange(direction.x, -limits_.max_coordinate, limits_.max_coordinate, path + ".x");
+    const bool y = CheckRange(direction.y, -limits_.max_coordinate, limits_.max_coordinate, path + ".y");
+    if (x && y && direction == Vector2{}) diagnostics_.Add(path, "is (0, 0); a direction is needed");
+  }
+
+  void CheckLight(std::size_t index) {
+    const LightDescription& light = scene_.lights[index];
+    const std::string path = Item("plane.lights", index);
+    lights_.Add(light.name, index);
+    if (const auto* point = std::get_if<PointLightDescription>(&light.kind)) {
+      CheckPoint(point->position, path + ".point.position");
+      CheckBrightness(point->power, path + ".point.power");
+    } else if (const auto* spot = std::get_if<SpotLightDescription>(&light.kind)) {
+      CheckPoint(spot->position, path + ".spot.position");
+      CheckDirection(spot->direction, path + ".spot.direction");
+      CheckBrightness(spot->power, path + ".spot.power");
+      const bool cone = CheckRange(spot->cone_angle, 0, std::numbers::pi, path + ".spot.coneAngle");
+      if (cone && CheckRange(spot->edge_angle, spot->cone_angle, std::numbers::pi, path + ".spot.edgeAngle") &&
+          spot->edge_angle == 0) {
+        diagnostics_.Add(path + ".spot.edgeAngle",
+                         "is 0: the cone is empty; allowed: above 0 to " + Number(std::numbers::pi));
+      }
+    } else if (const auto* directional = std::get_if<DirectionalLightDescription>(&light.kind)) {
+      CheckDirection(directional->direction, path + ".directional.direction");
+      CheckBrightness(directional->irradiance, path + ".directional.irradiance");
+    } else {
+      diagnostics_.Add(path, "has no kind; allowed: point, spot, directional");
     }
   }
 
@@ -155,8 +208,7 @@ class Validator {
       diagnostics_.Add(path + ".material", Quoted(curve.material) + " is not a material; " + materials_.Offer());
     }
     if (curve.emission) {
-      CheckSpectrum(curve.emission->radiance, path + ".emission.radiance", limits_.max_radiance,
-                    "0 to " + Number(limits_.max_radiance));
+      CheckBrightness(curve.emission->radiance, path + ".emission.radiance");
     }
   }
 
@@ -227,10 +279,7 @@ class Validator {
     for (std::size_t i = 0; i < probe.points.size(); ++i) {
       const std::string point = Item(path + ".points", i);
       CheckPoint(probe.points[i].position, point + ".position");
-      const Vector2 normal = probe.points[i].normal;
-      const bool x = CheckRange(normal.x, -limits_.max_coordinate, limits_.max_coordinate, point + ".normal.x");
-      const bool y = CheckRange(normal.y, -limits_.max_coordinate, limits_.max_coordinate, point + ".normal.y");
-      if (x && y && normal == Vector2{}) diagnostics_.Add(point + ".normal", "is (0, 0); a direction is needed");
+      CheckDirection(probe.points[i].normal, point + ".normal");
     }
   }
 
@@ -259,6 +308,7 @@ class Validator {
   const SceneLimits& limits_;
   Diagnostics& diagnostics_;
   Names materials_;
+  Names lights_;
   Names curves_;
   Names probes_;
   std::size_t elements_ = 0;

@@ -27,14 +27,48 @@ class Describer {
  public:
   explicit Describer(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
-  MaterialDescription Describe(const v1::Material& proto) const {
+  MaterialDescription Describe(const v1::Material& proto, const Place& place) {
     MaterialDescription material;
     material.name = proto.name();
     if (proto.has_lambertian()) {
-      const auto& values = proto.lambertian().reflectance();
-      material.kind = LambertianDescription{{values.begin(), values.end()}};
+      material.kind = LambertianDescription{Values(proto.lambertian().reflectance())};
+    } else if (proto.has_mirror()) {
+      material.kind = MirrorDescription{Values(proto.mirror().reflectance())};
+    } else if (proto.has_dielectric()) {
+      const Place dielectric{&place, "dielectric"};
+      material.kind = DielectricDescription{Number(proto.dielectric().has_ior(), proto.dielectric().ior(),
+                                                   {&dielectric, "ior"}, "a number from 0.01 to 100")};
+    } else if (proto.has_phong()) {
+      const Place phong{&place, "phong"};
+      material.kind = PhongDescription{Values(proto.phong().reflectance()),
+                                       Number(proto.phong().has_exponent(), proto.phong().exponent(),
+                                              {&phong, "exponent"}, "a number from 0 to 1e6")};
+    } else if (proto.has_conductor()) {
+      const Place conductor{&place, "conductor"};
+      material.kind = ConductorDescription{Values(proto.conductor().reflectance()),
+                                           Number(proto.conductor().has_roughness(), proto.conductor().roughness(),
+                                                  {&conductor, "roughness"}, "a number from 0 to 1")};
     }
     return material;
+  }
+
+  LightDescription Describe(const v1::Light& proto, const Place& place) {
+    LightDescription light;
+    light.name = proto.name();
+    if (proto.has_point()) {
+      const Place point{&place, "point"};
+      light.kind =
+          PointLightDescription{Point(proto.point().has_position(), proto.point().position(), {&point, "position"}),
+                                Values(proto.point().power())};
+    } else if (proto.has_spot()) {
+      light.kind = Describe(proto.spot(), Place{&place, "spot"});
+    } else if (proto.has_directional()) {
+      const Place directional{&place, "directional"};
+      light.kind = DirectionalLightDescription{
+          Direction(proto.directional().has_direction(), proto.directional().direction(), {&directional, "direction"}),
+          Values(proto.directional().irradiance())};
+    }
+    return light;
   }
 
   CurveDescription Describe(const v1::Curve& proto, const Place& place) {
@@ -51,8 +85,7 @@ class Describer {
     }
     curve.material = proto.material();
     if (proto.has_emission()) {
-      const auto& values = proto.emission().radiance();
-      curve.emission = EmissionDescription{{values.begin(), values.end()}, proto.emission().two_sided()};
+      curve.emission = EmissionDescription{Values(proto.emission().radiance()), proto.emission().two_sided()};
     }
     return curve;
   }
@@ -70,9 +103,8 @@ class Describer {
     for (int i = 0; i < proto.points_size(); ++i) {
       const v1::ProbePoint& from = proto.points(i);
       const Place point{&place, "points", i};
-      const Point2 normal =
-          Pair(from.has_normal(), from.normal(), {&point, "normal"}, "an object with x and y, a direction,");
-      probe.points.push_back({Point(from.has_position(), from.position(), {&point, "position"}), {normal.x, normal.y}});
+      const Vector2 normal = Direction(from.has_normal(), from.normal(), {&point, "normal"});
+      probe.points.push_back({Point(from.has_position(), from.position(), {&point, "position"}), normal});
     }
     return probe;
   }
@@ -99,6 +131,21 @@ class Describer {
     return arc;
   }
 
+  SpotLightDescription Describe(const v1::SpotLight& proto, const Place& place) {
+    SpotLightDescription spot;
+    spot.position = Point(proto.has_position(), proto.position(), {&place, "position"});
+    spot.direction = Direction(proto.has_direction(), proto.direction(), {&place, "direction"});
+    spot.power = Values(proto.power());
+    const char* const wanted = "a number from 0 to pi, in radians,";
+    spot.cone_angle = Number(proto.has_cone_angle(), proto.cone_angle(), {&place, "coneAngle"}, wanted);
+    spot.edge_angle = Number(proto.has_edge_angle(), proto.edge_angle(), {&place, "edgeAngle"}, wanted);
+    return spot;
+  }
+
+  static SpectrumValues Values(const google::protobuf::RepeatedField<double>& values) {
+    return {values.begin(), values.end()};
+  }
+
   double Number(bool given, double value, const Place& place, const char* wanted) {
     if (given) return value;
     diagnostics_.Add(place.Path(), std::string("is missing; ") + wanted + " is needed");
@@ -121,6 +168,11 @@ class Describer {
     return Pair(given, proto, place, "an object with x and y, in metres,");
   }
 
+  Vector2 Direction(bool given, const v1::Vector2& proto, const Place& place) {
+    const Point2 pair = Pair(given, proto, place, "an object with x and y, a direction,");
+    return {pair.x, pair.y};
+  }
+
   Diagnostics& diagnostics_;
 };
 
@@ -133,10 +185,19 @@ SceneDescription DescribeScene(const v1::Scene& proto, Diagnostics& diagnostics)
   Describer describer(diagnostics);
   const v1::Plane& plane = proto.plane();
   const Place plane_place{nullptr, "plane"};
-  for (const v1::Material& material : plane.materials()) scene.materials.push_back(describer.Describe(material));
+  for (int i = 0; i < plane.materials_size(); ++i) {
+    scene.materials.push_back(describer.Describe(plane.materials(i), Place{&plane_place, "materials", i}));
+  }
   scene.curves.reserve(static_cast<std::size_t>(plane.curves_size()));
   for (int i = 0; i < plane.curves_size(); ++i) {
     scene.curves.push_back(describer.Describe(plane.curves(i), Place{&plane_place, "curves", i}));
+  }
+  for (int i = 0; i < plane.lights_size(); ++i) {
+    scene.lights.push_back(describer.Describe(plane.lights(i), Place{&plane_place, "lights", i}));
+  }
+  if (plane.has_environment()) {
+    const auto& radiance = plane.environment().radiance();
+    scene.environment = EnvironmentDescription{{radiance.begin(), radiance.end()}};
   }
   for (int i = 0; i < proto.probes_size(); ++i) {
     scene.probes.push_back(describer.Describe(proto.probes(i), Place{nullptr, "probes", i}));

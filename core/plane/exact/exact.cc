@@ -101,7 +101,7 @@ ExactSolver::ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions option
 
 ExactValue ExactSolver::Evaluate(const Receiver& receiver) {
   ExactValue value;
-  if (scene_.traits().emitting_curves == 0) return value;
+  if (scene_.traits().emitting_curves == 0 && !scene_.traits().environment) return value;
   if (options_.channels == 1) {
     Add<1>(receiver, value);
   } else {
@@ -146,7 +146,9 @@ void ExactSolver::AddEnvelope(const Envelope& envelope, const Receiver& receiver
   for (std::size_t i = 0; i <= envelope.sectors().size(); ++i) {
     const Sector& sector = envelope.sectors()[i];
     Spectrum after;
-    if (sector.sight != Sector::kNothing) {
+    if (sector.sight == Sector::kNothing) {
+      if (i < envelope.sectors().size()) after = scene_.environment();
+    } else {
       const Sight& sight = envelope.SightOf(sector);
       const Emission& emission = emissions_[static_cast<std::size_t>(sight.element)];
       if (sight.front ? emission.front : emission.back) {
@@ -167,14 +169,21 @@ template <int kChannels>
 void ExactSolver::AddIntervals(const std::vector<VisibleInterval>& intervals, const std::vector<Part>& parts,
                                const Receiver& receiver, ExactValue& value) const {
   LightSum<kChannels> sum(scene_, options_, receiver, value);
+  const auto turn_at_horizon = [&](double sine, const Spectrum& after) {
+    if (!sum.Changes(after)) return;
+    sum.Next() = HorizonEdge(sine);
+    sum.Turn(after);
+  };
+  turn_at_horizon(-1, scene_.environment());
   for (const VisibleInterval& interval : intervals) {
-    Spectrum after;
+    Spectrum after = scene_.environment();
     if (interval.part != VisibleInterval::kNothing)
       after = scene_.curve_of(parts[static_cast<std::size_t>(interval.part)].element).EmittedRadiance(interval.side);
     if (!sum.Changes(after)) continue;
     sum.Next() = interval.begin;
     sum.Turn(after);
   }
+  turn_at_horizon(1, {});
 }
 
 }  // namespace flatlight

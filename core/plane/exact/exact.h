@@ -17,8 +17,9 @@
 
 namespace flatlight {
 
-// Normalised units: radiance; radiance per length; radiance per length squared. Derivatives are per arc length along
-// the receiver's tangent, its curvature included; at a visibility event toward increasing arc length.
+// Of curves that emit, and of the environment. Normalised units: radiance; radiance per length; radiance per length
+// squared. Derivatives are per arc length along the receiver's tangent, its curvature included; at a visibility event
+// toward increasing arc length.
 struct ExactValue {
   Spectrum irradiance;
   Spectrum gradient;
@@ -30,8 +31,10 @@ struct ExactValue {
 };
 
 struct ExactOptions {
-  int derivatives = 2;    // 0: irradiance alone; 1: and the gradient; 2: and the Hessian.
-  bool occlusion = true;  // False where nothing can stand between an emitter and a receiver: the search is left out.
+  int derivatives = 2;  // 0: irradiance alone; 1: and the gradient; 2: and the Hessian.
+  // False where nothing can stand between an emitter and a receiver: the search is left out. Needed if the environment
+  // shines.
+  bool occlusion = true;
   int channels = kMaxChannels;  // The first ones are computed, the others get the first one's values.
 };
 

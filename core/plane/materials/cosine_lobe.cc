@@ -15,8 +15,8 @@ double CosinePowerIntegral(double power) {
   double factor = 1;
   double m = power;
   for (; m < 60; m += 2) factor *= (m + 2) / (m + 1);
-  // sqrt(2 pi/x) times a series in 1/x^2, x = m + 1/2: the ratio Gamma(y + 1/4)/Gamma(y + 3/4), y = x/2, has an expansion
-  // of even terms (Tricomi and Erdelyi 1951). The first term left out is 2.5/x^10, below 1e-17.
+  // sqrt(2 pi/x) times a series in 1/x^2, x = m + 1/2: the ratio Gamma(y + 1/4)/Gamma(y + 3/4), y = x/2, has an
+  // expansion of even terms (Tricomi and Erdelyi 1951). The first term left out is 2.5/x^10, below 1e-17.
   const double z = 1 / (m + 0.5) / (m + 0.5);
   const double series = 1 + z * (-1.0 / 16 + z * (21.0 / 512 + z * (-671.0 / 8192 + z * (180323.0 / 524288))));
   return factor * std::sqrt(2 * std::numbers::pi / (m + 0.5)) * series;

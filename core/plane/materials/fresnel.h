@@ -12,8 +12,8 @@ struct FresnelSplit {
   LocalDirection transmitted;  // On the other side. Of no meaning if all is reflected.
 };
 
-// `in`: on the near side. `ratio`: index of refraction on the far side over that on the near side, > 0. Snell's law, and
-// Fresnel's equations for unpolarised light: the mean of both polarisations.
+// `in`: on the near side. `ratio`: index of refraction on the far side over that on the near side, > 0. Snell's law,
+// and Fresnel's equations for unpolarised light: the mean of both polarisations.
 FresnelSplit SplitAtBorder(LocalDirection in, double ratio);
 
 }  // namespace flatlight

@@ -19,8 +19,8 @@ class Microfacets {
   double Value(LocalDirection out, LocalDirection in) const;
   // Of Sample: per radian of `in`.
   double Density(LocalDirection out, LocalDirection in) const;
-  // The reflection on a facet that is visible from `out`, chosen by the first number in [0, 1). Absent where it leads below the
-  // curve: that sample counts, and is worth nothing.
+  // The reflection on a facet that is visible from `out`, chosen by the first number in [0, 1). Absent where it leads
+  // below the curve: that sample counts, and is worth nothing.
   std::optional<LocalDirection> Sample(LocalDirection out, double u, double) const;
 
  private:

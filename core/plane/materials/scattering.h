@@ -17,8 +17,8 @@ namespace flatlight {
 // Where the light comes from that leaves in a given direction.
 struct ScatterSample {
   LocalDirection in;
-  Spectrum weight;      // BRDF |cosine of in| / density; for specular materials the share of light over its chance.
-  double density = 0;   // Per radian of `in`; 0 if specular: the one direction.
+  Spectrum weight;     // BRDF |cosine of in| / density; for specular materials the share of light over its chance.
+  double density = 0;  // Per radian of `in`; 0 if specular: the one direction.
   // Radiance is larger where light is slower: index of refraction on the side of `out` over that on the side of `in`.
   // To the first power in the plane (THEORY 17 A6). Whoever follows flux leaves it out.
   double compression = 1;

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "core/execution/cancellation.h"
+#include "core/plane/materials/scattering.h"
 #include "core/plane/path_tracing/emitter_sampler.h"
 #include "core/plane/path_tracing/emitter_sights.h"
+#include "core/plane/path_tracing/light_sampler.h"
 #include "core/plane/path_tracing/vertex.h"
 #include "core/plane/ray_caster.h"
 #include "core/sampling/sample_stream.h"
@@ -31,11 +33,17 @@ struct PathTracingOptions {
   std::vector<ElementId> unseen_emitters;
 };
 
-// Irradiance by paths from the receiver. At each vertex the light of emitters to which the way is clear is added in
-// closed form, the others are sampled, and the path goes on in a direction
-// with density cos(theta)/2 (sin(theta) uniform); both reach emitters and are combined by the power heuristic (Veach
-// 1997, 9.2) with densities per angle. With reflectance rho and Lambertian curves
+template <int kChannels>
+class PathWalk;
+
+// Irradiance by paths from the receiver. At the receiver and on Lambertian curves the light of emitters to which the
+// way is clear is added in closed form, the others are sampled, and the path goes on in a direction with density
+// cos(theta)/2 (sin(theta) uniform); both reach emitters and are combined by the power heuristic (Veach 1997, 9.2) with
+// densities per angle. Without other curves, with reflectance rho
 //   E = (sampled emitters) + w 2 Le(hit) + rho(hit) E(hit, on the side that was hit).
+// Glossy curves sample emitters and their own lobe in the same way, mirrors and glass go on in the one direction there
+// is. Light of lights without a surface is added at every vertex that is not specular; what they send through mirrors
+// and glass to such a vertex no path finds. The environment is found by chance.
 // Russian roulette ends paths of small weight and divides survivors by their chance: no length is too long to count.
 class PathTracer {
  public:
@@ -53,6 +61,8 @@ class PathTracer {
 
    private:
     friend class PathTracer;
+    template <int kChannels>
+    friend class PathWalk;
     const PathTracer& tracer_;
     Vertex vertex_;
     EmitterSampler::View view_;
@@ -76,16 +86,18 @@ class PathTracer {
                std::span<double> irradiance, double& rays) const;
 
  private:
+  template <int kChannels>
+  friend class PathWalk;
+
   // What a path needs of a curve.
   struct Surface {
     Spectrum reflectance;
     Spectrum front_radiance;
     Spectrum back_radiance;
+    // Of its front in scatterings_, the back's follows; kLambertian if it is Lambertian, or black.
+    std::uint32_t scattering = kLambertian;
   };
-
-  template <int kChannels>
-  void AddPathOf(const Start& start, const SampleStream& stream, std::uint32_t index, const Cancellation& cancellation,
-                 std::span<double> irradiance, double& rays) const;
+  static constexpr std::uint32_t kLambertian = 0xffffffff;
 
   std::shared_ptr<const RayCaster> caster_;
   const Scene& scene_;
@@ -94,7 +106,10 @@ class PathTracer {
   std::vector<ElementId> emitting_;
   EmitterSampler emitters_;
   EmitterSights sights_;
+  LightSampler lights_;
   std::vector<Surface> surfaces_;  // By curve.
+  std::vector<Scattering> scatterings_;
+  double most_compression_ = 1;  // Of radiance, by one border.
 };
 
 }  // namespace flatlight

@@ -13,7 +13,9 @@ TEST(UnitPowerTest, AgreesWithLongDouble) {
   std::mt19937_64 random(1);
   const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   for (int i = 0; i < 200000; ++i) {
-    const double base = i % 3 == 0 ? 1 - std::exp(-35 * uniform()) : i % 3 == 1 ? uniform() : std::exp(-700 * uniform());
+    const double base = i % 3 == 0   ? 1 - std::exp(-35 * uniform())
+                        : i % 3 == 1 ? uniform()
+                                     : std::exp(-700 * uniform());
     const double exponent = std::exp(28 * uniform() - 14);
     const long double truth = std::pow(static_cast<long double>(base), static_cast<long double>(exponent));
     if (truth < 1e-300L) {

@@ -32,5 +32,19 @@ TEST(SinCosTest, QuartersOfATurn) {
   EXPECT_NEAR(SinCos(-0x1.921fb54442d18p+1).sin, -1.2246467991473532e-16, 1e-31);
 }
 
+TEST(AngleOfTest, IsTheArcTangent) {
+  std::mt19937_64 random(2);
+  for (int i = 0; i < 200000; ++i) {
+    const double x = static_cast<double>(random() >> 11) * 0x1p-52 - 1;
+    const double y = std::exp2(-40.0 * static_cast<double>(i % 7) / 6) * static_cast<double>(random() >> 11) * 0x1p-53;
+    const long double truth = std::atan2(static_cast<long double>(y), static_cast<long double>(x));
+    ASSERT_LE(std::abs(static_cast<double>(AngleOf(x, y) - truth)), 8e-16 * static_cast<double>(truth))
+        << x << ' ' << y;
+  }
+  EXPECT_EQ(AngleOf(1, 0), 0);
+  EXPECT_DOUBLE_EQ(AngleOf(-1, 0), 0x1.921fb54442d18p+1);
+  EXPECT_DOUBLE_EQ(AngleOf(0, 2), 0x1.921fb54442d18p+0);
+}
+
 }  // namespace
 }  // namespace flatlight

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
 
 #include "core/scene/element_frame.h"
@@ -49,6 +50,30 @@ std::shared_ptr<const Scene> Build(const SceneDescription& description) {
   EXPECT_THAT(Mistakes(description), IsEmpty());
   Diagnostics diagnostics;
   return BuildScene(description, diagnostics);
+}
+
+TEST(SceneTest, MaterialsAndLightsCountInTheWorldsHash) {
+  SceneDescription scene = GoodScene();
+  std::set<std::string> hashes{Build(scene)->world_hash()};
+  const auto differs = [&] { return hashes.insert(Build(scene)->world_hash()).second; };
+  for (const decltype(MaterialDescription::kind)& kind : std::vector<decltype(MaterialDescription::kind)>{
+           MirrorDescription{{0.8}}, DielectricDescription{1.5}, DielectricDescription{1.6}, PhongDescription{{0.8}, 2},
+           PhongDescription{{0.8}, 3}, ConductorDescription{{0.8}, 0.2}, ConductorDescription{{0.8}, 0.3}}) {
+    scene.materials[0].kind = kind;
+    EXPECT_TRUE(differs());
+  }
+  scene.lights.push_back({"bulb", PointLightDescription{{0, 1}, {5}}});
+  EXPECT_TRUE(differs());
+  scene.lights[0].kind = SpotLightDescription{{0, 1}, {0, -1}, {5}, 0.1, 0.2};
+  EXPECT_TRUE(differs());
+  scene.lights[0].kind = DirectionalLightDescription{{0, -1}, {5}};
+  EXPECT_TRUE(differs());
+  scene.environment = EnvironmentDescription{{1}};
+  EXPECT_TRUE(differs());
+  scene.lights.clear();
+  EXPECT_TRUE(differs());
+  scene.environment->radiance = {2};
+  EXPECT_TRUE(differs());
 }
 
 // Every mistake that a description can have, one by one.

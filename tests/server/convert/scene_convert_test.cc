@@ -63,6 +63,58 @@ TEST(SceneConvertTest, BuildsTheSceneThatWasWritten) {
   EXPECT_DOUBLE_EQ(scene->probes()[1].receivers[0].normal.y, 1);
 }
 
+// Every material and light there is, in one scene.
+constexpr char kShow[] = R"({"name":"show","plane":{
+  "materials":[{"name":"m","mirror":{"reflectance":[0.9]}},{"name":"d","dielectric":{"ior":1.5}},
+               {"name":"p","phong":{"reflectance":[0.5,0.6,0.7],"exponent":20}},
+               {"name":"c","conductor":{"reflectance":[0.8],"roughness":0.5}}],
+  "curves":[{"name":"m","segment":{"a":{"x":-2,"y":0},"b":{"x":2,"y":0}},"material":"m"},
+            {"name":"d","segment":{"a":{"x":-2,"y":1},"b":{"x":2,"y":1}},"material":"d"},
+            {"name":"p","segment":{"a":{"x":-2,"y":2},"b":{"x":2,"y":2}},"material":"p"},
+            {"name":"c","segment":{"a":{"x":-2,"y":3},"b":{"x":2,"y":3}},"material":"c"}],
+  "lights":[{"name":"bulb","point":{"position":{"x":0,"y":0.5},"power":[6.283185307179586]}},
+            {"name":"spot","spot":{"position":{"x":1,"y":0.5},"direction":{"x":0,"y":-2},"power":[3],
+             "coneAngle":0.5,"edgeAngle":1}},
+            {"name":"sun","directional":{"direction":{"x":3,"y":-4},"irradiance":[7]}}],
+  "environment":{"radiance":[0.25]}},
+  "probes":[{"name":"p","curve":"m","count":4}]})";
+
+v1::Scene Show() {
+  v1::Scene proto;
+  Diagnostics diagnostics;
+  EXPECT_NE(SceneFromJson(kShow, proto, diagnostics), nullptr);
+  EXPECT_THAT(Paths(diagnostics), IsEmpty());
+  return proto;
+}
+
+TEST(SceneConvertTest, KnowsEveryMaterialAndLight) {
+  Diagnostics diagnostics;
+  const auto scene = SceneFromProto(Show(), diagnostics);
+  ASSERT_NE(scene, nullptr);
+  const auto& curves = scene->curves();
+  EXPECT_EQ(std::get<Mirror>(curves[0].material).reflectance, Spectrum::Grey(0.9));
+  EXPECT_EQ(std::get<Dielectric>(curves[1].material).ior, 1.5);
+  EXPECT_EQ(curves[1].reflectance, Spectrum::Grey(1));
+  EXPECT_EQ(std::get<Phong>(curves[2].material).exponent, 20);
+  EXPECT_EQ(std::get<Conductor>(curves[3].material).alpha, 0.25);
+  EXPECT_EQ(scene->channels(), 3);
+  EXPECT_FALSE(scene->traits().lambertian);
+  const double unit = scene->frame().radiance_scale * scene->frame().scale;
+  ASSERT_EQ(scene->lights().size(), 3U);
+  const auto& bulb = std::get<PointLight>(scene->lights()[0].kind);
+  EXPECT_DOUBLE_EQ(unit * bulb.intensity[0], 1);
+  EXPECT_EQ(bulb.Share({1, 7}), 1);
+  const auto& spot = std::get<PointLight>(scene->lights()[1].kind);
+  EXPECT_DOUBLE_EQ(unit * spot.intensity[0], 2);
+  EXPECT_EQ(spot.axis, (Vector2{0, -1}));
+  EXPECT_EQ(spot.Share({0.4, -1}), 1);
+  EXPECT_EQ(spot.Share({2, -1}), 0);
+  const auto& sun = std::get<DirectionalLight>(scene->lights()[2].kind);
+  EXPECT_DOUBLE_EQ(scene->frame().radiance_scale * sun.irradiance[0], 7);
+  EXPECT_DOUBLE_EQ(sun.direction.x, 0.6);
+  EXPECT_DOUBLE_EQ(scene->frame().radiance_scale * scene->environment()[2], 0.25);
+}
+
 struct Removal {
   const char* path;
   std::function<void(v1::Scene&)> remove;
@@ -111,6 +163,45 @@ TEST(SceneConvertTest, NamesWhatIsMissingAndOnlyThat) {
     Diagnostics diagnostics;
     EXPECT_EQ(SceneFromProto(proto, diagnostics), nullptr) << removal.path;
     EXPECT_THAT(Paths(diagnostics), ElementsAre(removal.path));
+  }
+}
+
+TEST(SceneConvertTest, NamesWhatMaterialsAndLightsMiss) {
+  const auto material = [](v1::Scene& scene, int i) { return scene.mutable_plane()->mutable_materials(i); };
+  const auto light = [](v1::Scene& scene, int i) { return scene.mutable_plane()->mutable_lights(i); };
+  const std::vector<Removal> spoilers = {
+      {"plane.materials[0].mirror.reflectance",
+       [&](v1::Scene& s) { material(s, 0)->mutable_mirror()->clear_reflectance(); }},
+      {"plane.materials[1].dielectric.ior", [&](v1::Scene& s) { material(s, 1)->mutable_dielectric()->clear_ior(); }},
+      {"plane.materials[1].dielectric.ior", [&](v1::Scene& s) { material(s, 1)->mutable_dielectric()->set_ior(0); }},
+      {"plane.materials[2].phong.exponent", [&](v1::Scene& s) { material(s, 2)->mutable_phong()->clear_exponent(); }},
+      {"plane.materials[2].phong.exponent", [&](v1::Scene& s) { material(s, 2)->mutable_phong()->set_exponent(-1); }},
+      {"plane.materials[3].conductor.roughness",
+       [&](v1::Scene& s) { material(s, 3)->mutable_conductor()->clear_roughness(); }},
+      {"plane.materials[3].conductor.reflectance[0]",
+       [&](v1::Scene& s) { material(s, 3)->mutable_conductor()->set_reflectance(0, 1.01); }},
+      {"plane.lights[0]", [&](v1::Scene& s) { light(s, 0)->clear_point(); }},
+      {"plane.lights[1].name", [&](v1::Scene& s) { light(s, 1)->set_name("bulb"); }},
+      {"plane.lights[0].point.position", [&](v1::Scene& s) { light(s, 0)->mutable_point()->clear_position(); }},
+      {"plane.lights[0].point.power", [&](v1::Scene& s) { light(s, 0)->mutable_point()->clear_power(); }},
+      {"plane.lights[0].point.power[0]", [&](v1::Scene& s) { light(s, 0)->mutable_point()->set_power(0, -1); }},
+      {"plane.lights[1].spot.direction", [&](v1::Scene& s) { light(s, 1)->mutable_spot()->clear_direction(); }},
+      {"plane.lights[1].spot.coneAngle", [&](v1::Scene& s) { light(s, 1)->mutable_spot()->clear_cone_angle(); }},
+      {"plane.lights[1].spot.edgeAngle", [&](v1::Scene& s) { light(s, 1)->mutable_spot()->set_edge_angle(0.4); }},
+      {"plane.lights[2].directional.direction",
+       [&](v1::Scene& s) { light(s, 2)->mutable_directional()->mutable_direction()->set_x(0); }},
+      {"plane.lights[2].directional.irradiance",
+       [&](v1::Scene& s) { light(s, 2)->mutable_directional()->clear_irradiance(); }},
+      {"plane.environment.radiance", [&](v1::Scene& s) { s.mutable_plane()->mutable_environment()->clear_radiance(); }},
+  };
+  for (const Removal& spoiler : spoilers) {
+    v1::Scene proto = Show();
+    if (std::string(spoiler.path) == "plane.lights[2].directional.direction")
+      proto.mutable_plane()->mutable_lights(2)->mutable_directional()->mutable_direction()->set_y(0);
+    spoiler.remove(proto);
+    Diagnostics diagnostics;
+    EXPECT_EQ(SceneFromProto(proto, diagnostics), nullptr) << spoiler.path;
+    EXPECT_THAT(Paths(diagnostics), ElementsAre(spoiler.path));
   }
 }
 

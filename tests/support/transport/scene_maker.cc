@@ -9,7 +9,9 @@ namespace flatlight {
 
 void SceneMaker::AddCurve(CurveDescription curve, const Look& look) {
   curve.material = curve.name + " material";
-  description_.materials.push_back({curve.material, LambertianDescription{look.reflectance}});
+  MaterialKind kind = look.material;
+  if (std::holds_alternative<std::monostate>(kind)) kind = LambertianDescription{look.reflectance};
+  description_.materials.push_back({curve.material, std::move(kind)});
   if (!look.radiance.empty()) curve.emission = EmissionDescription{look.radiance, look.two_sided};
   description_.curves.push_back(std::move(curve));
 }
@@ -35,6 +37,16 @@ SceneMaker& SceneMaker::Arc(const std::string& name, const ArcDescription& arc, 
   curve.name = name;
   curve.shape = arc;
   AddCurve(std::move(curve), look);
+  return *this;
+}
+
+SceneMaker& SceneMaker::Light(LightKind light) {
+  description_.lights.push_back({"light " + std::to_string(description_.lights.size()), std::move(light)});
+  return *this;
+}
+
+SceneMaker& SceneMaker::Environment(SpectrumValues radiance) {
+  description_.environment = EnvironmentDescription{std::move(radiance)};
   return *this;
 }
 

@@ -14,11 +14,15 @@
 
 namespace flatlight {
 
+using MaterialKind = decltype(MaterialDescription::kind);
+using LightKind = decltype(LightDescription::kind);
+
 // Black and dark unless said otherwise.
 struct Look {
   SpectrumValues reflectance = {0};
   SpectrumValues radiance = {};  // Empty: does not emit.
   bool two_sided = false;
+  MaterialKind material = {};  // Given: in place of Lambertian reflectance.
 };
 
 // Collects curves and probes; Build stops the program if they make no valid scene. Each curve has a material of its
@@ -29,6 +33,8 @@ class SceneMaker {
   SceneMaker& Segment(const std::string& name, Point2 a, Point2 b, const Look& look = {});
   SceneMaker& Polyline(const std::string& name, std::vector<Point2> points, bool closed, const Look& look = {});
   SceneMaker& Arc(const std::string& name, const ArcDescription& arc, const Look& look = {});
+  SceneMaker& Light(LightKind light);
+  SceneMaker& Environment(SpectrumValues radiance);
   SceneMaker& Probe(const std::string& curve, std::uint32_t count, Side side = Side::kFront);
   SceneMaker& PointProbe(Point2 position, Vector2 normal);
 

@@ -81,8 +81,7 @@ TEST(ScatteringTest, MakesNoLight) {
 }
 
 TEST(ScatteringTest, ReflectsWhatItSays) {
-  for (const double out : OutAngles())
-    EXPECT_NEAR(Albedo(Lambertian{Spectrum::Grey(0.7)}, out), 0.7, 1e-8) << out;
+  for (const double out : OutAngles()) EXPECT_NEAR(Albedo(Lambertian{Spectrum::Grey(0.7)}, out), 0.7, 1e-8) << out;
   for (const double exponent : {0.01, 0.5, 1.0, 50.0, 1000.0})
     EXPECT_NEAR(Albedo(Phong{Spectrum::Grey(0.7), exponent}, 0), 0.7, 1e-6) << exponent;
   // Light between facets is lost: values of THEORY 18 B10, 17 A5.
