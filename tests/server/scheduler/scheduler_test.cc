@@ -127,10 +127,10 @@ TEST_F(SchedulerTest, ANewcomerGoesBeforeThoseThatHaveSomethingToShow) {
   const JobId a = Submit("a");
   AwaitPhase(a, JobPhase::kRunning);
   const JobId b = Submit("b");
-  AwaitPhase(b, JobPhase::kRunning);
+  AwaitPreparation();  // Else both steps may be a's.
   renderings_.Allow(2);
   Await(b, [](const JobState& state) { return state.field != nullptr; });
-  Submit("c");  // While a's second slice waits for its step, or just before it.
+  Submit("c");  // While the next slice waits for its step, or just before it.
   AwaitPreparation();
   renderings_.Release();
   AwaitEnd(b);
