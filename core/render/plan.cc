@@ -13,6 +13,8 @@ namespace flatlight {
 namespace {
 
 constexpr std::uint32_t kDefaultSamples = 1024;
+// Of a pixel: a path goes through hundreds of them.
+constexpr std::uint32_t kDefaultPictureSamples = 8;
 // Paths of a block: samples come in whole ones.
 constexpr double kBlockSamples = 16;
 
@@ -50,6 +52,11 @@ void CheckRanges(const Settings& settings, Diagnostics& diagnostics) {
 // Settings that the method would ignore, and scenes that it cannot do.
 void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   if (settings.method == Method::kExact) {
+    if (scene.traits().pixels > 0) {
+      diagnostics.Add("settings.method",
+                      "exact gives irradiance at points, and a probe of this scene is a picture: use "
+                      "path-tracing");
+    }
     if (settings.samples.has_value())
       diagnostics.Add("settings.samples", "does not apply to exact, which draws no samples");
     if (settings.seed.has_value()) diagnostics.Add("settings.seed", "does not apply to exact, which draws no samples");
@@ -71,7 +78,7 @@ void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diag
   if (settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone) {
     diagnostics.Add("settings.derivatives", "path-tracing gives none: leave this out, or use exact");
   }
-  if (!DirectLightOnly(scene, settings) && HasHiddenCaustics(scene)) {
+  if (scene.traits().probe_points > 0 && !DirectLightOnly(scene, settings) && HasHiddenCaustics(scene)) {
     diagnostics.Add("settings.method",
                     "path-tracing cannot find the light that plane.lights send over mirrors and glass: set max bounces "
                     "to 0, or give the light a surface, a small arc that emits");
@@ -84,7 +91,8 @@ void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diag
   }
 }
 
-void FillMethodDefaults(Settings& settings) {
+void FillMethodDefaults(const Scene& scene, Plan& plan) {
+  Settings& settings = plan.settings;
   if (settings.method == Method::kExact) {
     if (!settings.derivatives.has_value()) settings.derivatives = Derivatives::kHessian;
     return;
@@ -92,7 +100,13 @@ void FillMethodDefaults(Settings& settings) {
   settings.derivatives = Derivatives::kNone;
   if (!settings.seed.has_value()) settings.seed = 0;
   const bool open_ended = settings.target_error.has_value() || settings.time_limit.has_value();
-  if (!settings.samples.has_value() && !open_ended) settings.samples = kDefaultSamples;
+  if (scene.traits().pixels > 0) {
+    plan.picture_samples = settings.samples;
+    if (!settings.samples.has_value() && !open_ended) plan.picture_samples = kDefaultPictureSamples;
+  }
+  if (!settings.samples.has_value() && !open_ended) {
+    settings.samples = scene.traits().probe_points > 0 ? kDefaultSamples : kDefaultPictureSamples;
+  }
 }
 
 // Vertices of a path if all curves reflect as the average one does, weighed by length.
@@ -123,11 +137,21 @@ void AddPasses(const Scene& scene, Plan& plan) {
       pass.expected_rays = pass.points * pass.samples * rays_per_vertex * ExpectedVertices(scene, plan);
     }
   }
-  plan.passes.push_back(pass);
+  if (pass.points > 0 || scene.traits().pixels == 0) plan.passes.push_back(pass);
+  if (scene.traits().pixels == 0) return;
+  PlanPass pictures;
+  pictures.name = "light followed through the pictures";
+  pictures.points = static_cast<double>(scene.traits().pixels);
+  pictures.samples = plan.picture_samples.value_or(0);
+  if (!plan.Takes(skip::kEmission)) {
+    pictures.expected_rays = pictures.points * pictures.samples * ExpectedVertices(scene, plan);
+  }
+  plan.passes.push_back(pictures);
 }
 
 std::string Summary(const Scene& scene, const Plan& plan) {
   const std::size_t points = scene.traits().probe_points;
+  const std::size_t pixels = scene.traits().pixels;
   std::string text;
   if (plan.settings.method == Method::kExact) {
     text = "Exact direct light";
@@ -135,7 +159,7 @@ std::string Summary(const Scene& scene, const Plan& plan) {
     if (plan.settings.derivatives == Derivatives::kHessian) text += " with gradient and Hessian";
     text += " at ";
   } else {
-    text = "Path tracing of ";
+    text = points == 0 && pixels > 0 ? "Light tracing of " : "Path tracing of ";
     if (plan.settings.max_bounces == 0u || plan.Takes(skip::kBounces)) {
       text += "direct light";
     } else if (plan.settings.max_bounces.has_value()) {
@@ -145,7 +169,8 @@ std::string Summary(const Scene& scene, const Plan& plan) {
     }
     text += " at ";
   }
-  text += Text(points) + (points == 1 ? " point" : " points");
+  if (points > 0 || pixels == 0) text += std::to_string(points) + (points == 1 ? " point" : " points");
+  if (pixels > 0) text += (points > 0 ? " and in " : "") + std::to_string(pixels) + " pixels";
   if (plan.settings.method == Method::kPathTracing) {
     if (plan.settings.samples.has_value()) text += ", at most " + Text(plan.passes[0].samples) + " paths each";
     if (plan.settings.target_error.has_value())
@@ -171,12 +196,13 @@ std::optional<Plan> MakePlan(const Scene& scene, const Settings& settings, Diagn
   plan.settings = settings;
   if (!settings.method.has_value()) {
     const bool sampling = settings.samples || settings.seed || settings.target_error || settings.time_limit;
-    plan.settings.method = DirectLightOnly(scene, settings) && !sampling ? Method::kExact : Method::kPathTracing;
+    const bool exact = DirectLightOnly(scene, settings) && !sampling && scene.traits().pixels == 0;
+    plan.settings.method = exact ? Method::kExact : Method::kPathTracing;
   }
   CheckRanges(settings, diagnostics);
   CheckMethod(scene, plan.settings, diagnostics);
   if (diagnostics.count() != before) return std::nullopt;
-  FillMethodDefaults(plan.settings);
+  FillMethodDefaults(scene, plan);
   plan.skips = DecideSkips(scene, plan.settings);
   AddPasses(scene, plan);
   plan.summary = Summary(scene, plan);

@@ -35,6 +35,7 @@ struct Plan {
   // Settings as they apply: method, derivatives, seed and (for path tracing) samples are always there; samples is
   // absent if the end is left to target_error or time_limit.
   Settings settings;
+  std::optional<double> picture_samples;  // Paths a pixel; absent if there is none, or if the end is left open.
   std::vector<SkipEntry> skips;
   std::vector<PlanPass> passes;
   std::string summary;

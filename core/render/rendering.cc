@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "core/render/exact_rendering.h"
+#include "core/render/fluence_rendering.h"
+#include "core/render/joint_rendering.h"
 #include "core/render/path_tracing_rendering.h"
 #include "core/render/skips.h"
 
@@ -15,7 +17,12 @@ std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, co
   if (plan.settings.method == Method::kExact) {
     return std::make_unique<ExactRendering>(std::move(scene), std::move(caster), plan);
   }
-  return std::make_unique<PathTracingRendering>(std::move(scene), std::move(caster), plan);
+  const SceneTraits& traits = scene->traits();
+  if (traits.pixels == 0) return std::make_unique<PathTracingRendering>(std::move(scene), std::move(caster), plan);
+  auto pictures = std::make_unique<FluenceRendering>(scene, caster, plan);
+  if (traits.probe_points == 0) return pictures;
+  auto points = std::make_unique<PathTracingRendering>(std::move(scene), std::move(caster), plan);
+  return std::make_unique<JointRendering>(std::move(points), std::move(pictures));
 }
 
 std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, const Plan& plan) {

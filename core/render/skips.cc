@@ -66,6 +66,14 @@ class Decisions {
   std::vector<SkipEntry> entries_;
 };
 
+void AddBounces(const Scene& scene, const Settings& settings, const LightWays& ways, Decisions& decisions) {
+  const bool none_asked = settings.max_bounces == 0u;
+  decisions.Add(skip::kBounces, !none_asked && (scene.traits().max_reflectance == 0 || ways.unlit_reflectors),
+                ways.unlit_reflectors ? "no light comes to what reflects: direct light is all"
+                                      : "nothing reflects: direct light is all",
+                none_asked ? "max bounces 0 asks for none anyway" : "some curves reflect");
+}
+
 }  // namespace
 
 std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings) {
@@ -90,16 +98,21 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
   }
   const bool direct = DirectLightOnly(scene, settings);
   const LightWays ways(scene, direct);
+  if (traits.probe_points == 0 && traits.pixels > 0) {
+    const std::string reason = "light is followed from where it shines: no point looks for it";
+    decisions.Add(skip::kVisibility, false, "", reason);
+    AddBounces(scene, settings, ways, decisions);
+    for (const char* name : {skip::kBlackPaths, skip::kUnseenEmitters, skip::kConvergedPoints}) {
+      decisions.Add(name, false, "", reason);
+    }
+    return decisions.Take();
+  }
   const std::string clear_reason = "nothing stands between an emitter and what it lights in " +
                                    std::to_string(ways.clear) + " of " + Counted(ways.known, "pair", "pairs") +
                                    ": no shadow tests there";
   decisions.Add(skip::kVisibility, nothing_blocks || ways.clear > 0, nothing_blocks ? nothing_reason : clear_reason,
                 "curves may block each other");
-  const bool none_asked = settings.max_bounces == 0u;
-  decisions.Add(skip::kBounces, !none_asked && (traits.max_reflectance == 0 || ways.unlit_reflectors),
-                ways.unlit_reflectors ? "no light comes to what reflects: direct light is all"
-                                      : "nothing reflects: direct light is all",
-                none_asked ? "max bounces 0 asks for none anyway" : "some curves reflect");
+  AddBounces(scene, settings, ways, decisions);
   const std::vector<Curve>& curves = scene.curves();
   const auto black = static_cast<std::size_t>(
       std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return c.reflectance.IsBlack(); }));

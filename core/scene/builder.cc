@@ -143,6 +143,8 @@ void SceneBuilder::Normalise() {
   if (description_.curves.empty()) {
     for (const ProbeDescription& probe : description_.probes)
       for (const ProbePointDescription& point : probe.points) box.Add(point.position);
+    for (const ProbeDescription& probe : description_.probes)
+      if (probe.fluence) box.Add(*probe.fluence->min), box.Add(*probe.fluence->max);
     for (const LightDescription& light : description_.lights) {
       if (const auto* point = std::get_if<PointLightDescription>(&light.kind)) box.Add(point->position);
       if (const auto* spot = std::get_if<SpotLightDescription>(&light.kind)) box.Add(spot->position);
@@ -300,12 +302,36 @@ void SceneBuilder::AddLights() {
   }
 }
 
+PixelGrid SceneBuilder::PictureOf(const FluenceDescription& description) {
+  PixelGrid grid;
+  grid.width = *description.width;
+  grid.height = *description.height;
+  if (description.min) {
+    grid.low = ToFrame(*description.min), grid.high = ToFrame(*description.max);
+    return grid;
+  }
+  // Everything, in square pixels.
+  constexpr double kMargin = 0.03;  // Of the longer side, all around.
+  Box box;
+  for (const CurveDescription& curve : description_.curves) AddShape(curve, box);
+  const Point2 low = ToFrame({box.low_x, box.low_y}), high = ToFrame({box.high_x, box.high_y});
+  const Vector2 size = high - low;
+  const double margin = 2 * kMargin * std::max(size.x, size.y);
+  const double pixel = std::max((size.x + margin) / grid.width, (size.y + margin) / grid.height);
+  const Vector2 half{0.5 * pixel * grid.width, 0.5 * pixel * grid.height};
+  const Point2 middle = low + 0.5 * size;
+  grid.low = middle - half, grid.high = middle + half;
+  return grid;
+}
+
 void SceneBuilder::AddProbes() {
   for (const ProbeDescription& description : description_.probes) {
     Probe probe;
     probe.name = description.name;
     if (description.curve) {
       AddCurveProbe(description, probe);
+    } else if (description.fluence) {
+      probe.picture = PictureOf(*description.fluence);
     } else {
       AddPointProbe(description, probe);
     }
@@ -415,7 +441,10 @@ void SceneBuilder::Summarise() {
   double largest_radius = 0;
   for (const Element& element : scene.elements_) largest_radius = std::max(largest_radius, element.radius);
   if (largest_radius > 1) scene.coordinate_error_ += 4 * kUnitRoundoff * largest_radius;
-  for (const Probe& probe : scene.probes_) traits.probe_points += probe.receivers.size();
+  for (const Probe& probe : scene.probes_) {
+    traits.probe_points += probe.receivers.size();
+    traits.pixels += probe.picture ? probe.picture->pixels() : 0;
+  }
   scene.world_hash_ = HashWorld(description_);
   scene.probe_hash_ = HashProbes(description_);
 }

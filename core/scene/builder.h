@@ -31,6 +31,7 @@ class SceneBuilder {
   void AddArc(std::size_t curve, const ArcDescription& arc);
   void AddLights();
   void AddProbes();
+  PixelGrid PictureOf(const FluenceDescription& description);
   void AddCurveProbe(const ProbeDescription& description, Probe& probe) const;
   // The element of a curve at an arc length; kNone where another curve covers it.
   ElementId ElementAt(const Curve& curve, double arc_length) const;

@@ -108,6 +108,14 @@ struct ProbePointDescription {
   Vector2 normal;
 };
 
+struct FluenceDescription {
+  // Both or neither.
+  std::optional<Point2> min;
+  std::optional<Point2> max;
+  std::optional<std::uint32_t> width;
+  std::optional<std::uint32_t> height;
+};
+
 struct ProbeDescription {
   std::string name;
   std::optional<std::string> curve;
@@ -116,6 +124,7 @@ struct ProbeDescription {
   std::optional<double> to;
   std::optional<Side> side;
   std::vector<ProbePointDescription> points;
+  std::optional<FluenceDescription> fluence;
 };
 
 struct SceneDescription {

@@ -91,6 +91,8 @@ void AddLight(const LightDescription& light, Hasher& hasher) {
 
 // What follows is no curve: no shape has this number.
 constexpr std::uint64_t kNoMoreCurves = 1000;
+// A picture follows, not another probe: those begin with 0 or 1.
+constexpr std::uint64_t kPicture = 1000;
 
 }  // namespace
 
@@ -133,6 +135,12 @@ std::string HashProbes(const SceneDescription& description) {
     }
     hasher.Add(std::uint64_t{probe.points.size()});
     for (const ProbePointDescription& point : probe.points) hasher.Add(point.position), hasher.Add(point.normal);
+    if (probe.fluence) {
+      hasher.Add(kPicture);
+      hasher.Add(std::uint64_t{probe.fluence->min.has_value()});
+      if (probe.fluence->min) hasher.Add(*probe.fluence->min), hasher.Add(*probe.fluence->max);
+      hasher.Add(std::uint64_t{*probe.fluence->width}), hasher.Add(std::uint64_t{*probe.fluence->height});
+    }
   }
   return hasher.Hex();
 }

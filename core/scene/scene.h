@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,16 @@ struct Receiver {
   double arc_length = 0;
 };
 
+// A picture of a part of the plane. Normalised coordinates.
+struct PixelGrid {
+  Point2 low;
+  Point2 high;
+  std::uint32_t width = 0;  // Pixels. Row 0 is the lowest.
+  std::uint32_t height = 0;
+
+  std::size_t pixels() const { return std::size_t{width} * height; }
+};
+
 struct Probe {
   std::string name;
   CurveId curve = CurveId::kNone;  // kNone: free points.
@@ -80,6 +91,10 @@ struct Probe {
   Point2 low;                      // All points lie in this box.
   Point2 high;
   std::vector<Receiver> receivers;
+  std::optional<PixelGrid> picture;  // In place of receivers: fluence, averaged over each pixel.
+
+  // Of which there are values.
+  std::size_t points() const { return picture ? picture->pixels() : receivers.size(); }
 };
 
 struct Frame {
@@ -93,8 +108,9 @@ struct SceneTraits {
   std::size_t curves = 0;
   std::size_t elements = 0;
   std::size_t emitting_curves = 0;
-  std::size_t probe_points = 0;
-  std::size_t lights = 0;  // Without a surface.
+  std::size_t probe_points = 0;  // Pixels aside.
+  std::size_t pixels = 0;        // Of all pictures.
+  std::size_t lights = 0;        // Without a surface.
   double max_reflectance = 0;
   bool lambertian = true;    // Nothing but Lambertian curves reflects.
   bool environment = false;  // Light comes from infinitely far away, all around.

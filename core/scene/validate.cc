@@ -102,6 +102,10 @@ class Validator {
     if (scene_.environment) CheckBrightness(scene_.environment->radiance, "plane.environment.radiance");
     if (scene_.probes.empty()) diagnostics_.Add("probes", "is missing or empty; at least one probe is needed");
     for (std::size_t i = 0; i < scene_.probes.size(); ++i) CheckProbe(i);
+    if (pixels_ > limits_.max_pixels) {
+      diagnostics_.Add("probes", "have " + std::to_string(pixels_) + " pixels; at most " +
+                                     std::to_string(limits_.max_pixels) + " are allowed");
+    }
     if (probe_points_ > limits_.max_probe_points) {
       diagnostics_.Add("probes", "have " + std::to_string(probe_points_) + " points; at most " +
                                      std::to_string(limits_.max_probe_points) + " are allowed");
@@ -260,10 +264,10 @@ class Validator {
     const ProbeDescription& probe = scene_.probes[index];
     const std::string path = Item("probes", index);
     probes_.Add(probe.name, index);
-    if (probe.curve.has_value() == !probe.points.empty()) {
-      diagnostics_.Add(path, probe.curve ? "has both a curve and points; exactly one of them is allowed"
-                                         : "has neither a curve nor points; exactly one of them is needed");
-    }
+    const int kinds = (probe.curve ? 1 : 0) + (probe.points.empty() ? 0 : 1) + (probe.fluence ? 1 : 0);
+    if (kinds > 1) diagnostics_.Add(path, "has more than one of curve, points and fluence; exactly one is allowed");
+    if (kinds == 0) diagnostics_.Add(path, "has none of curve, points and fluence; exactly one is needed");
+    if (probe.fluence) CheckPicture(*probe.fluence, path + ".fluence");
     if (probe.curve) {
       CheckCurveProbe(probe, path);
     } else {
@@ -281,6 +285,41 @@ class Validator {
       CheckPoint(probe.points[i].position, point + ".position");
       CheckDirection(probe.points[i].normal, point + ".normal");
     }
+  }
+
+  void CheckPicture(const FluenceDescription& picture, const std::string& path) {
+    const bool min = picture.min && CheckPoint(*picture.min, path + ".min");
+    const bool max = picture.max && CheckPoint(*picture.max, path + ".max");
+    if (picture.min.has_value() != picture.max.has_value()) {
+      diagnostics_.Add(
+          path, picture.min ? "has min but no max; give both or neither" : "has max but no min; give both or neither");
+    } else if (!picture.min && scene_.curves.empty()) {
+      diagnostics_.Add(path, "has no min and max, and the scene no curves to put into the picture");
+    }
+    const auto check_order = [&](double low, double high, const char* axis) {
+      if (!(low < high)) {
+        diagnostics_.Add(path + ".max." + axis,
+                         "is " + Number(high) + "; allowed: above min." + axis + ", " + Number(low));
+      }
+    };
+    if (min && max) {
+      check_order(picture.min->x, picture.max->x, "x");
+      check_order(picture.min->y, picture.max->y, "y");
+    }
+    const auto check_side = [&](const std::optional<std::uint32_t>& side, const char* name) {
+      const std::string allowed = "1 to " + std::to_string(limits_.max_picture_side);
+      if (!side.has_value()) {
+        diagnostics_.Add(path + "." + name, "is missing; a whole number of pixels, " + allowed + ", is needed");
+      } else if (*side < 1 || *side > limits_.max_picture_side) {
+        diagnostics_.Add(path + "." + name, "is " + std::to_string(*side) + "; allowed: " + allowed);
+      } else {
+        return true;
+      }
+      return false;
+    };
+    const bool width = check_side(picture.width, "width");
+    const bool height = check_side(picture.height, "height");
+    if (width && height) pixels_ += std::size_t{*picture.width} * *picture.height;
   }
 
   void CheckCurveProbe(const ProbeDescription& probe, const std::string& path) {
@@ -313,6 +352,7 @@ class Validator {
   Names probes_;
   std::size_t elements_ = 0;
   std::size_t probe_points_ = 0;
+  std::size_t pixels_ = 0;
 };
 
 }  // namespace

@@ -12,8 +12,10 @@ struct SceneLimits {
   std::size_t max_curves = 4'000'000;
   std::size_t max_elements = 16'000'000;  // Straight pieces; arcs count as up to 5.
   std::size_t max_probe_points = 1'000'000;
-  double max_coordinate = 1e100;  // m, of any coordinate and radius.
-  double max_radiance = 1e100;    // W/(rad m); also of power, W, and of irradiance, W/m.
+  std::uint32_t max_picture_side = 16'384;        // Pixels.
+  std::size_t max_pixels = std::size_t{2} << 20;  // Of all pictures.
+  double max_coordinate = 1e100;                  // m, of any coordinate and radius.
+  double max_radiance = 1e100;                    // W/(rad m); also of power, W, and of irradiance, W/m.
   std::size_t max_lights = 10'000;
 };
 

@@ -106,6 +106,15 @@ class Describer {
       const Vector2 normal = Direction(from.has_normal(), from.normal(), {&point, "normal"});
       probe.points.push_back({Point(from.has_position(), from.position(), {&point, "position"}), normal});
     }
+    if (proto.has_fluence()) {
+      const v1::FluencePicture& from = proto.fluence();
+      const Place fluence{&place, "fluence"};
+      probe.fluence.emplace();
+      if (from.has_min()) probe.fluence->min = Point(true, from.min(), {&fluence, "min"});
+      if (from.has_max()) probe.fluence->max = Point(true, from.max(), {&fluence, "max"});
+      if (from.has_width()) probe.fluence->width = from.width();
+      if (from.has_height()) probe.fluence->height = from.height();
+    }
     return probe;
   }
 

@@ -25,8 +25,21 @@ void AddSlice(const std::vector<double>& values, std::size_t first, std::size_t 
 void FillProbeGeometry(const SceneOutline& scene, std::size_t probe, std::size_t first, std::size_t count,
                        v1::ProbeResult& out) {
   const Probe& source = scene.probes[probe];
-  FLATLIGHT_DCHECK(first + count <= source.receivers.size());
+  FLATLIGHT_DCHECK(first + count <= source.points());
   out.set_name(source.name);
+  if (source.picture) {
+    out.set_quantity(v1::ProbeResult::FLUENCE);
+    out.set_width(source.picture->width);
+    out.set_height(source.picture->height);
+    if (out.corners().empty()) {
+      for (const Point2 corner : {source.picture->low, source.picture->high}) {
+        const Point2 world = scene.ToWorld(corner);
+        out.add_corners(world.x), out.add_corners(world.y);
+      }
+    }
+    return;
+  }
+  out.set_quantity(v1::ProbeResult::IRRADIANCE);
   const bool on_curve = source.curve != CurveId::kNone;
   const int size = static_cast<int>(count);
   out.mutable_positions()->Reserve(out.positions_size() + 2 * size);
@@ -47,7 +60,6 @@ void FillProbeValues(const Field& field, int channels, std::size_t probe, std::s
                      v1::ProbeResult& out) {
   const ProbeField& source = field.probes[probe];
   const auto width = static_cast<std::size_t>(channels);
-  out.set_quantity(v1::ProbeResult::IRRADIANCE);
   out.set_count(static_cast<std::uint32_t>(count));
   out.set_channels(static_cast<std::uint32_t>(channels));
   AddSlice(source.irradiance, first, count, width, *out.mutable_irradiance());
@@ -65,7 +77,7 @@ v1::RenderResult ResultToProto(const SceneOutline& scene, const Field& field) {
   result.set_world_hash(scene.world_hash);
   result.set_probe_hash(scene.probe_hash);
   for (std::size_t probe = 0; probe < scene.probes.size(); ++probe) {
-    const std::size_t count = scene.probes[probe].receivers.size();
+    const std::size_t count = scene.probes[probe].points();
     v1::ProbeResult& out = *result.add_probes();
     FillProbeGeometry(scene, probe, 0, count, out);
     FillProbeValues(field, scene.channels, probe, 0, count, out);
@@ -97,6 +109,7 @@ v1::SceneTraits TraitsToProto(const SceneTraits& traits) {
   proto.set_probe_points(static_cast<double>(traits.probe_points));
   proto.set_max_reflectance(traits.max_reflectance);
   proto.set_grey(traits.grey);
+  proto.set_pixels(static_cast<double>(traits.pixels));
   return proto;
 }
 

@@ -31,6 +31,18 @@ constexpr Entry kEntries[] = {
     {"keyhole", "Keyhole", "All light in the second room comes through a gap of 10 cm, which few random paths find."},
     {"ring", "Sun, moon and crescent in a ring",
      "Round emitters and blockers in a round room: all that works for straight curves must work for arcs."},
+    {"caustic", "Caustic of a round cup",
+     "A polished half circle gathers a lamp's light in a bright cusp, which only paths that begin at the lamp find "
+     "well."},
+    {"lens", "Lens with two lamps",
+     "Glass gathers the light of each lamp on the other side, and turns the picture over."},
+    {"prism", "Prism", "A beam is bent twice by glass, and what meets the wall beyond came no straight way."},
+    {"mirror-corridor", "Corridor of mirrors",
+     "Two lamps between two mirrors light the end of the corridor like an endless row of lamps that grow dimmer."},
+    {"city", "City in the evening sun",
+     "Sun and sky light a street between houses: sharp shadows, soft sky light, and colours from wall to wall."},
+    {"nearly-closed", "White room with a slit",
+     "Light comes in by a slit of 4 cm and stays for many bounces, so ending paths early costs much of it."},
     {"no-wall", "Lit floor beside nothing",
      "The unit light with a black wall on its left: pair it with black-wall, which looks different and is lit the "
      "same."},

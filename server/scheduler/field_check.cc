@@ -38,7 +38,7 @@ absl::Status CheckFinite(const SceneOutline& scene, const Field& field) {
       const auto bad =
           std::find_if_not(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
       if (bad == values.end()) continue;
-      const std::size_t width = values.size() / scene.probes[probe].receivers.size();
+      const std::size_t width = values.size() / scene.probes[probe].points();
       const auto point = static_cast<std::size_t>(bad - values.begin()) / width;
       return NotFinite(
           "probe \"" + scene.probes[probe].name + "\": " + quantity.name + " at point " + std::to_string(point), *bad);

@@ -32,7 +32,7 @@ FieldVersions StampVersions(const SceneOutline& scene, const Field* before, cons
                             const Field& after, std::uint64_t sequence) {
   FieldVersions versions;
   for (std::size_t probe = 0; probe < scene.probes.size(); ++probe) {
-    const std::size_t points = scene.probes[probe].receivers.size();
+    const std::size_t points = scene.probes[probe].points();
     std::vector<std::uint64_t>& changed = versions.changed.emplace_back();
     for (std::size_t first = 0; first < points; first += FieldVersions::kPoints) {
       const std::size_t last = std::min(points, first + FieldVersions::kPoints);

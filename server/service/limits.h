@@ -13,6 +13,7 @@ struct Limits {
   std::uint64_t max_scene_bytes = 512ull << 20;
   std::uint32_t max_curves = 4'000'000;  // Each piece of a polyline counts.
   std::uint32_t max_probe_points = 1'000'000;
+  std::uint32_t max_pixels = 2u << 20;  // A picture of all channels takes 200 bytes a pixel while it is rendered.
   std::uint32_t max_running_jobs = 200;
   std::uint32_t max_jobs = 1000;
   std::uint32_t max_watches = 2000;

@@ -129,6 +129,7 @@ v1::GetCapabilitiesResponse GetCapabilities(const Backend& backend) {
   limits.set_max_scene_depth(kMaxSceneDepth);
   limits.set_max_curves(backend.limits.max_curves);
   limits.set_max_probe_points(backend.limits.max_probe_points);
+  limits.set_max_pixels(backend.limits.max_pixels);
   limits.set_max_running_jobs(backend.limits.max_running_jobs);
   limits.set_max_jobs(backend.limits.max_jobs);
   limits.set_max_watches(backend.limits.max_watches);

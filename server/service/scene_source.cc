@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/scene_source.h"
 
+#include <algorithm>
 #include <string_view>
 
 #include "server/convert/scene_convert.h"
@@ -17,23 +18,25 @@ constexpr std::string_view kPrefix = "scenes/";
 
 // Before anything is built: what a few bytes ask for can be large.
 bool WithinLimits(const v1::Scene& scene, const Limits& limits, Diagnostics& diagnostics) {
-  std::uint64_t pieces = 0;
+  bool within = true;
+  const auto check = [&](const char* path, const char* what, std::uint64_t number, std::uint64_t limit) {
+    if (number <= limit) return;
+    diagnostics.Add(path, std::to_string(number) + what + "; allowed: at most " + std::to_string(limit));
+    within = false;
+  };
+  std::uint64_t pieces = 0, points = 0;
+  double pixels = 0;  // Sides may have any size still.
   for (const v1::Curve& curve : scene.plane().curves()) {
     pieces += curve.has_polyline() ? static_cast<std::uint64_t>(curve.polyline().points_size()) : 1;
   }
-  if (pieces > limits.max_curves) {
-    diagnostics.Add("plane.curves", std::to_string(pieces) + " curves and pieces of polylines; allowed: at most " +
-                                        std::to_string(limits.max_curves));
-  }
-  std::uint64_t points = 0;
   for (const v1::Probe& probe : scene.probes()) {
     points += probe.count() + static_cast<std::uint64_t>(probe.points_size());
+    pixels += static_cast<double>(probe.fluence().width()) * probe.fluence().height();
   }
-  if (points > limits.max_probe_points) {
-    diagnostics.Add("probes", std::to_string(points) + " points in all; allowed: at most " +
-                                  std::to_string(limits.max_probe_points));
-  }
-  return pieces <= limits.max_curves && points <= limits.max_probe_points;
+  check("plane.curves", " curves and pieces of polylines", pieces, limits.max_curves);
+  check("probes", " points in all", points, limits.max_probe_points);
+  check("probes", " pixels in all", static_cast<std::uint64_t>(std::min(pixels, 1e18)), limits.max_pixels);
+  return within;
 }
 
 }  // namespace
@@ -63,12 +66,19 @@ absl::StatusOr<NamedScene> FindScene(const std::string& name, SceneStore& scenes
 
 namespace {
 
-absl::StatusOr<std::shared_ptr<const Scene>> LoadNamed(const std::string& name, const SceneShelf& shelf,
+// In place of the scene's own, if there are any.
+void ReplaceProbes(const v1::SceneSource& source, v1::Scene& scene) {
+  if (!source.probes().empty()) *scene.mutable_probes() = source.probes();
+}
+
+absl::StatusOr<std::shared_ptr<const Scene>> LoadNamed(const v1::SceneSource& source, const SceneShelf& shelf,
                                                        const Proceed& proceed, Diagnostics& diagnostics) {
+  const std::string& name = source.name();
   const auto named = FindScene(name, shelf.uploads);
   if (!named.ok()) return named.status();
   const std::string id = name.substr(kPrefix.size());
-  if (auto built = shelf.built.Get(id)) {
+  const bool as_stored = source.probes().empty();
+  if (auto built = as_stored ? shelf.built.Get(id) : nullptr) {
     shelf.uploads.SetTitle(id, built->name());  // The file may have been deleted and uploaded again.
     return built;
   }
@@ -76,11 +86,21 @@ absl::StatusOr<std::shared_ptr<const Scene>> LoadNamed(const std::string& name, 
   v1::Scene proto;
   ReadSceneJson(*named->json, proto, diagnostics);  // Mistakes of form do not hide those of meaning.
   if (!named->info.gallery()) shelf.uploads.SetTitle(id, proto.name());
+  ReplaceProbes(source, proto);
   if (!WithinLimits(proto, shelf.limits, diagnostics)) return nullptr;
   if (absl::Status wanted = proceed(); !wanted.ok()) return wanted;
   auto scene = SceneFromProto(proto, diagnostics);
-  if (scene != nullptr && !named->info.gallery()) shelf.built.Put(id, scene);
+  if (scene != nullptr && as_stored && !named->info.gallery()) shelf.built.Put(id, scene);
   return scene;
+}
+
+std::shared_ptr<const Scene> LoadInline(const v1::SceneSource& source, const Limits& limits, Diagnostics& diagnostics) {
+  if (source.probes().empty()) {
+    return WithinLimits(source.scene(), limits, diagnostics) ? SceneFromProto(source.scene(), diagnostics) : nullptr;
+  }
+  v1::Scene scene = source.scene();
+  ReplaceProbes(source, scene);
+  return WithinLimits(scene, limits, diagnostics) ? SceneFromProto(scene, diagnostics) : nullptr;
 }
 
 }  // namespace
@@ -91,11 +111,10 @@ absl::StatusOr<std::shared_ptr<const Scene>> LoadScene(const v1::SceneSource& so
   switch (source.source_case()) {
     case v1::SceneSource::kScene:
       if (absl::Status wanted = proceed(); !wanted.ok()) return wanted;
-      if (!WithinLimits(source.scene(), shelf.limits, diagnostics)) return nullptr;
-      scene = SceneFromProto(source.scene(), diagnostics);
+      scene = LoadInline(source, shelf.limits, diagnostics);
       break;
     case v1::SceneSource::kName:
-      scene = LoadNamed(source.name(), shelf, proceed, diagnostics);
+      scene = LoadNamed(source, shelf, proceed, diagnostics);
       break;
     case v1::SceneSource::SOURCE_NOT_SET:
       return MakeFieldError("scene", "missing; give a name (scenes/{scene}) or a scene");

@@ -51,7 +51,7 @@ void WatchUpdate::PlanMessages() {
   const std::size_t bytes_per_point = BytesPerPoint(scene, state.field != nullptr, !known_);
   std::size_t room = kMaxMessageBytes - kHeadBytes;
   for (std::size_t probe = 0; probe < scene.probes.size(); ++probe) {
-    const std::size_t points = scene.probes[probe].receivers.size();
+    const std::size_t points = scene.probes[probe].points();
     const std::size_t frame_bytes = kFrameBytes + (known_ ? 0 : scene.probes[probe].name.size());
     for (std::size_t run = 0; run * FieldVersions::kPoints < points; ++run) {
       if (known_ && state.versions.changed[probe][run] <= *known_) continue;
@@ -90,7 +90,6 @@ v1::WatchJobResponse WatchUpdate::Build(std::size_t index) const {
     v1::ProbeResult& points = *update.mutable_points();
     if (!known_) {
       FillProbeGeometry(scene, cut.probe, cut.first, cut.count, points);
-      points.set_quantity(v1::ProbeResult::IRRADIANCE);
       points.set_count(static_cast<std::uint32_t>(cut.count));
       points.set_channels(static_cast<std::uint32_t>(scene.channels));
     }

@@ -10,17 +10,26 @@ namespace {
 
 constexpr std::chrono::hours kRequestMemory{24};
 
-// Of a job that has ended, a little more than what it holds: the probes' points and a field with every array.
-double EstimateEndedBytes(const JobSpec& spec) {
-  return 4096 + static_cast<double>(spec.scene->name.size()) +
-         static_cast<double>(spec.scene->traits.probe_points) * (100.0 + 8 * (6 * spec.scene->channels + 1));
+// The probes' points and a field with every array; of a pixel, value and error.
+double EstimateFieldBytes(const SceneTraits& traits, int channels) {
+  return static_cast<double>(traits.probe_points) * (100.0 + 8 * (6 * channels + 1)) +
+         static_cast<double>(traits.pixels) * 16 * channels;
 }
 
-// Until then: scene and acceleration structure besides, points with what is gathered there, and a second field.
+// Of a job that has ended, a little more than what it holds.
+double EstimateEndedBytes(const JobSpec& spec) {
+  return 4096 + static_cast<double>(spec.scene->name.size()) +
+         EstimateFieldBytes(spec.scene->traits, spec.scene->channels);
+}
+
+// Until then: scene and acceleration structure besides, points and pixels with what is gathered there, and a second
+// field.
 double EstimateBytes(const JobSpec& spec) {
   const SceneTraits& traits = spec.scene->traits;
+  constexpr double kPixelBytes = 64;  // A float for each replicate.
   return EstimateEndedBytes(spec) + 400.0 * static_cast<double>(traits.elements) +
-         static_cast<double>(traits.probe_points) * (100.0 + 8 * (6 * spec.scene->channels + 1));
+         EstimateFieldBytes(traits, spec.scene->channels) +
+         static_cast<double>(traits.pixels) * kPixelBytes * spec.scene->channels;
 }
 
 absl::Status NoSuchJob(const JobId& id) {

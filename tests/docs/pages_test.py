@@ -33,6 +33,10 @@ class PagesTest(unittest.TestCase):
         for name in names:
             self.assertIn(f"`--{name.replace('_', '-')}", text("docs/settings.md"))
 
+    def test_every_gallery_scene_has_its_picture(self):
+        for scene in (ROOT / "server/gallery/scenes").glob("*.json"):
+            self.assertIn(f"(pictures/gallery/{scene.stem}.png)", text("docs/gallery.md"))
+
 
 if __name__ == "__main__":
     unittest.main()

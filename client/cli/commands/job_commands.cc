@@ -39,7 +39,7 @@ CommandResult Submit(const CommandLine& line, Interruption& interruption) {
   const auto session = OpenServer(line, interruption);
   if (!session.ok()) return session.status();
   Connection& connection = (*session)->connection();
-  const auto source = ProvideScene(connection, *scene);
+  const auto source = ProvideScene(connection, *scene, line.probes);
   if (!source.ok()) return source.status();
   const auto job = CreateJob(connection, *source, line.settings);
   if (!job.ok()) return ExplainSceneError(connection, *scene, *source, job.status());

@@ -63,7 +63,7 @@ CommandResult Render(const CommandLine& line, Interruption& interruption) {
   const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
   if (!session.ok()) return session.status();
   Connection& connection = (*session)->connection();
-  const auto source = ProvideScene(connection, *scene);
+  const auto source = ProvideScene(connection, *scene, line.probes);
   if (!source.ok()) return (*session)->Explain(source.status());
   const auto job = CreateJob(connection, *source, line.settings);
   if (!job.ok()) return ExplainSceneError(connection, *scene, *source, (*session)->Explain(job.status()));

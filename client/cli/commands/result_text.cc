@@ -59,7 +59,8 @@ std::optional<double> LargestRelativeError(const v1::ProbeResult& probe) {
 std::string ResultText(const v1::RenderResult& result) {
   std::vector<std::vector<std::string>> rows;
   for (const v1::ProbeResult& probe : result.probes())
-    rows.push_back({Printable(probe.name()), "irradiance " + RangeText(probe), ErrorText(result, probe)});
+    rows.push_back({Printable(probe.name()), (probe.has_width() ? "fluence " : "irradiance ") + RangeText(probe),
+                    ErrorText(result, probe)});
   const v1::Statistics& statistics = result.statistics();
   std::string text = FormatTable(rows);
   text += EndText(result.end_reason()) + " in " + FormatSeconds(statistics.wall_seconds());

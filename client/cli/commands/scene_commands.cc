@@ -56,7 +56,8 @@ std::string TraitsText(const SceneArgument& scene, const v1::ValidateSceneRespon
   return FormatTable({{scene.label, "is a good scene"},
                       {"curves", FormatExactly(traits.curves()) + " (" + Plural(traits.elements(), "piece") + ", " +
                                      Plural(traits.emitters(), "emitter") + ")"},
-                      {"probes", Plural(traits.probe_points(), "point")},
+                      {"probes", Plural(traits.probe_points(), "point") +
+                                     (traits.pixels() > 0 ? ", " + Plural(traits.pixels(), "pixel") : "")},
                       {"spectra", traits.grey() ? "grey" : "coloured"},
                       {"largest reflectance", FormatExactly(traits.max_reflectance())},
                       {"world", response.world_hash()},
@@ -76,7 +77,7 @@ absl::StatusOr<OpenedScene> OpenScene(const CommandLine& line, Interruption& int
   if (absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
   auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
   if (!session.ok()) return session.status();
-  auto source = ProvideScene((*session)->connection(), *scene);
+  auto source = ProvideScene((*session)->connection(), *scene, line.probes);
   if (!source.ok()) return (*session)->Explain(source.status());
   return OpenedScene{*std::move(scene), *std::move(session), *std::move(source)};
 }

@@ -26,8 +26,9 @@ std::string Title(const v1::RenderResult& result, int probe, int channel) {
 }  // namespace
 
 bool HasArcLengths(const v1::RenderResult& result) {
-  return std::all_of(result.probes().begin(), result.probes().end(),
-                     [](const v1::ProbeResult& probe) { return probe.count() == 0 || !probe.arc_length().empty(); });
+  return std::all_of(result.probes().begin(), result.probes().end(), [](const v1::ProbeResult& probe) {
+    return probe.count() == 0 || probe.has_width() || !probe.arc_length().empty();
+  });
 }
 
 std::vector<PlotSeries> PlotSeriesOf(const v1::RenderResult& result, const PlotQuantity& quantity) {
@@ -37,7 +38,7 @@ std::vector<PlotSeries> PlotSeriesOf(const v1::RenderResult& result, const PlotQ
   std::vector<PlotSeries> all;
   for (int number = 0; number < result.probes_size(); ++number) {
     const v1::ProbeResult& probe = result.probes(number);
-    if (values.values(probe).empty()) continue;
+    if (values.values(probe).empty() || probe.has_width()) continue;
     const bool band = !probe.standard_error().empty() && !errors.values(probe).empty();
     for (int channel = 0; channel < static_cast<int>(probe.channels()); ++channel) {
       PlotSeries series{Title(result, number, channel), number, channel, {}};

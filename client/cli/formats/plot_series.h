@@ -33,7 +33,7 @@ struct PlotSeries {
 // Whether every probe with points has arc lengths.
 bool HasArcLengths(const v1::RenderResult& result);
 
-// Only probes that have the quantity. Bands are two standard errors; a deterministic result has none.
+// Only probes that have the quantity, and no pictures. Bands are two standard errors; a deterministic result has none.
 std::vector<PlotSeries> PlotSeriesOf(const v1::RenderResult& result, const PlotQuantity& quantity);
 
 // At most about `limit` points: of every run of neighbours the lowest and the highest stay, in their order.

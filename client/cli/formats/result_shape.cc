@@ -21,6 +21,10 @@ std::string FindProbeDefect(const v1::ProbeResult& probe, const std::string& pat
     return path + ".channels is " + std::to_string(probe.channels()) + ": must be 1 or 3";
   if (probe.count() > static_cast<unsigned>(std::numeric_limits<int>::max()) / 3)
     return path + ".count is " + std::to_string(probe.count()) + ": too many";
+  if ((probe.has_width() || probe.has_height()) &&
+      std::uint64_t{probe.width()} * probe.height() != std::uint64_t{probe.count()})
+    return path + ".count is " + std::to_string(probe.count()) + ": must be width * height, " +
+           std::to_string(probe.width()) + " * " + std::to_string(probe.height());
   if (probe.irradiance().empty() && probe.count() > 0) return path + ".irradiance is missing";
   for (const ResultColumn& column : AllResultColumns()) {
     const DoubleArray& values = column.values(probe);

@@ -17,6 +17,7 @@ struct Raw {
   CommandLine line;
   SettingsOptions settings;
   BenchTexts bench;
+  std::optional<std::string> picture;
   std::optional<std::string> tolerance;
   std::optional<std::string> server;
 };
@@ -91,6 +92,8 @@ void AddSceneCommands(CLI::App& app, Raw& raw) {
                                    : submit ? kSubmitHelp
                                             : kExplainHelp);
     AddScene(command, raw);
+    command.add_option("--picture", raw.picture, "a picture of the light in the whole scene, in place of its probes")
+        ->type_name("WxH");
     AddSettings(command, raw);
     if (render) AddOutputs(command, raw);
     AddJson(command, raw, render ? "the result" : submit ? "the job" : "the plan");
@@ -190,6 +193,11 @@ absl::StatusOr<CommandLine> Finish(const CLI::App& app, Raw& raw) {
   raw.line.bench = *std::move(bench);
   absl::StatusOr<v1::Settings> settings = ParseSettings(raw.settings);
   if (!settings.ok()) return settings.status();
+  if (raw.picture) {
+    absl::StatusOr<v1::Probe> picture = ParsePicture(*raw.picture);
+    if (!picture.ok()) return picture.status();
+    raw.line.probes.push_back(*std::move(picture));
+  }
   raw.line.settings = *std::move(settings);
   if (raw.server) {
     if (raw.server->empty()) return UsageError("--server: ''; must be HOST:PORT or unix:PATH");

@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/cli/options/bench_options.h"
+#include "flatlight/v1/scene.pb.h"
 #include "flatlight/v1/settings.pb.h"
 
 namespace flatlight {
@@ -22,6 +23,7 @@ struct CommandLine {
   std::string scene;  // SCENE as written; of `scenes`, the name of one, or empty.
   std::string job;    // JOB as written.
   v1::Settings settings;
+  std::vector<v1::Probe> probes;  // Of --picture: in place of the scene's own.
   std::vector<std::string> outputs;
   std::vector<std::string> results;  // The two files of `compare` and of `bench compare`.
   std::optional<double> tolerance;   // Of `compare`.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/options/settings_options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -71,6 +72,20 @@ absl::StatusOr<double> ParseNumber(const std::string& option, const std::string&
   const std::string low = zero == Zero::kAllowed ? " from 0" : " above 0";
   const bool bounded = high < std::numeric_limits<double>::max();
   return Refuse(option, text, "a number" + low + (bounded ? ", at most " + FormatValue(high) : ""));
+}
+
+absl::StatusOr<v1::Probe> ParsePicture(const std::string& text) {
+  const std::size_t cross = std::min(text.find('x'), text.size());
+  std::uint32_t width = 0, height = 0;
+  if (!ParseWhole(text.substr(0, cross), width) || !ParseWhole(text.substr(std::min(cross + 1, text.size())), height) ||
+      width == 0 || height == 0) {
+    return Refuse("--picture", text, "WIDTHxHEIGHT in pixels, for instance 800x600");
+  }
+  v1::Probe probe;
+  probe.set_name("picture");
+  probe.mutable_fluence()->set_width(width);
+  probe.mutable_fluence()->set_height(height);
+  return probe;
 }
 
 absl::StatusOr<v1::Settings> ParseSettings(const SettingsOptions& options) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "flatlight/v1/scene.pb.h"
 #include "flatlight/v1/settings.pb.h"
 
 namespace flatlight {
@@ -20,6 +21,9 @@ struct SettingsOptions {
 
 // Values out of range end with ExitCode::kUsage: "--samples: '-5'; must be a whole number from 1 to 4294967295".
 absl::StatusOr<v1::Settings> ParseSettings(const SettingsOptions& options);
+
+// "WIDTHxHEIGHT": a picture of the whole scene of so many pixels.
+absl::StatusOr<v1::Probe> ParsePicture(const std::string& text);
 
 // A number in (0, `high`], or from 0 if `zero` is allowed.
 enum class Zero { kAllowed, kRefused };

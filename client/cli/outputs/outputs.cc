@@ -16,6 +16,7 @@
 #include "client/cli/formats/plot_script.h"
 #include "client/cli/outputs/atomic_file.h"
 #include "client/cli/outputs/picture_writer.h"
+#include "client/cli/outputs/tone_mapping.h"
 #include "client/cli/status/exit_code.h"
 
 namespace flatlight {
@@ -46,7 +47,8 @@ bool IsPicture(OutputForm form) { return form == OutputForm::kExr || form == Out
 absl::Status CheckOutput(const Output& output) {
   absl::Status tool = absl::OkStatus();
   if (IsPlot(output.form)) tool = FindGnuplot();
-  if (IsPicture(output.form)) tool = FindPictureModule();
+  // What .png shows is known when the result is: pictures if there are any.
+  if (tool.ok() && (IsPicture(output.form) || output.form == OutputForm::kPng)) tool = FindPictureModule();
   if (!tool.ok()) return OutputError(output.path, Reason(tool));
   return CheckWritable(output.path);
 }
@@ -58,6 +60,21 @@ absl::StatusOr<std::string> Pictures(const v1::RenderResult& result, const std::
   return PictureBytes(ending, pictures);
 }
 
+// Of pictures alone, as a screen shows them.
+absl::StatusOr<std::string> ScreenPicture(const v1::RenderResult& result) {
+  v1::RenderResult shown;
+  for (const v1::ProbeResult& probe : result.probes())
+    if (probe.has_width()) *shown.add_probes() = probe;
+  return PictureBytes(".png", {ToneMapped(StackedColour(PicturesOf(shown)))});
+}
+
+absl::StatusOr<std::string> Plot(const v1::RenderResult& result, PlotForm form) {
+  const auto plottable = [](const v1::ProbeResult& probe) { return !probe.has_width(); };
+  if (!std::any_of(result.probes().begin(), result.probes().end(), plottable) && result.probes_size() > 0)
+    return absl::FailedPreconditionError("the result is a picture, not a curve to plot: use .png, .exr or .hdr");
+  return RunGnuplot(PlotScript(result, form));
+}
+
 absl::StatusOr<std::string> Bytes(const v1::RenderResult& result, OutputForm form,
                                   const std::function<bool()>& interrupted) {
   switch (form) {
@@ -66,9 +83,9 @@ absl::StatusOr<std::string> Bytes(const v1::RenderResult& result, OutputForm for
     case OutputForm::kNpy:
       return ResultToNpy(result, interrupted);
     case OutputForm::kSvg:
-      return RunGnuplot(PlotScript(result, PlotForm::kSvg));
+      return Plot(result, PlotForm::kSvg);
     case OutputForm::kPng:
-      return RunGnuplot(PlotScript(result, PlotForm::kPng));
+      return HasPictures(result) ? ScreenPicture(result) : Plot(result, PlotForm::kPng);
     case OutputForm::kExr:
       return Pictures(result, ".exr");
     case OutputForm::kHdr:

@@ -26,23 +26,37 @@ std::vector<Picture> PicturesOf(const v1::RenderResult& result) {
   for (const v1::ProbeResult& probe : result.probes()) {
     if (probe.count() == 0) continue;
     Picture picture{probe.name(), static_cast<int>(probe.count()), 1, static_cast<int>(probe.channels()), {}};
-    for (const double value : probe.irradiance()) picture.pixels.push_back(static_cast<float>(value));
+    if (probe.has_width())
+      picture.width = static_cast<int>(probe.width()), picture.height = static_cast<int>(probe.height());
+    const int row = picture.width * picture.channels;
+    picture.pixels.reserve(static_cast<std::size_t>(probe.irradiance_size()));
+    for (int y = picture.height - 1; y >= 0; --y)
+      for (int i = 0; i < row; ++i) picture.pixels.push_back(static_cast<float>(probe.irradiance(y * row + i)));
     pictures.push_back(std::move(picture));
   }
   return pictures;
 }
 
+bool HasPictures(const v1::RenderResult& result) {
+  return std::any_of(result.probes().begin(), result.probes().end(),
+                     [](const v1::ProbeResult& probe) { return probe.has_width(); });
+}
+
 Picture StackedColour(const std::vector<Picture>& pictures) {
   Picture stacked;
   stacked.channels = 3;
-  stacked.height = static_cast<int>(pictures.size());
-  for (const Picture& picture : pictures) stacked.width = std::max(stacked.width, picture.width);
+  stacked.height = 0;
+  for (const Picture& picture : pictures) {
+    stacked.width = std::max(stacked.width, picture.width);
+    stacked.height += picture.height;
+  }
   for (const Picture& picture : pictures)
-    for (int x = 0; x < stacked.width; ++x)
-      for (int channel = 0; channel < stacked.channels; ++channel) {
-        const int source = x * picture.channels + std::min(channel, picture.channels - 1);
-        stacked.pixels.push_back(x < picture.width ? picture.pixels[static_cast<std::size_t>(source)] : 0.0F);
-      }
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < stacked.width; ++x)
+        for (int channel = 0; channel < stacked.channels; ++channel) {
+          const int source = (y * picture.width + x) * picture.channels + std::min(channel, picture.channels - 1);
+          stacked.pixels.push_back(x < picture.width ? picture.pixels[static_cast<std::size_t>(source)] : 0.0F);
+        }
   return stacked;
 }
 

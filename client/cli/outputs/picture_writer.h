@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results as pictures of 32-bit floats, .exr or .hdr, one row a probe and one pixel a point.
+// Results as pictures: those that are some, and others as one row a probe and one pixel a point.
 #ifndef FLATLIGHT_CLIENT_CLI_OUTPUTS_PICTURE_WRITER_H_
 #define FLATLIGHT_CLIENT_CLI_OUTPUTS_PICTURE_WRITER_H_
 
@@ -20,16 +20,20 @@ struct Picture {
   std::vector<float> pixels;
 };
 
-// A picture of one row for each probe that has points.
+// A picture for each probe that has points, row 0 on top; of points one row.
 std::vector<Picture> PicturesOf(const v1::RenderResult& result);
 
-// One above the other with 3 channels, as .hdr wants it: shorter rows are filled up with zeros.
+// Whether some probe is a picture.
+bool HasPictures(const v1::RenderResult& result);
+
+// One above the other with 3 channels, for formats that hold one picture: shorter rows are filled up with zeros.
 Picture StackedColour(const std::vector<Picture>& pictures);
 
 // OK if the module that writes pictures lies beside the program.
 absl::Status FindPictureModule();
 
-// A file in memory. `ending` is .exr (a part for each picture) or .hdr (one picture of 3 channels).
+// A file in memory. `ending` is .exr (32-bit floats, a part for each picture), .hdr (one picture of 3 channels) or .png
+// (one picture of values in [0, 1], 8 bits).
 absl::StatusOr<std::string> PictureBytes(const std::string& ending, const std::vector<Picture>& pictures);
 
 }  // namespace flatlight

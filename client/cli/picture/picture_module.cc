@@ -16,16 +16,18 @@
 
 namespace {
 
-std::vector<OIIO::ImageSpec> Specs(const FlatlightPicture* pictures, int count) {
+std::vector<OIIO::ImageSpec> Specs(const std::string& ending, const FlatlightPicture* pictures, int count) {
+  const bool screen = ending == ".png";
   std::vector<OIIO::ImageSpec> specs;
   int full_width = 0;
   for (int i = 0; i < count; ++i) full_width = std::max(full_width, pictures[i].width);
   for (int i = 0; i < count; ++i) {
-    OIIO::ImageSpec spec(pictures[i].width, pictures[i].height, pictures[i].channels, OIIO::TypeDesc::FLOAT);
+    OIIO::ImageSpec spec(pictures[i].width, pictures[i].height, pictures[i].channels,
+                         screen ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
     spec.full_width = full_width;  // OpenEXR wants one display window for all parts; data windows may differ.
     if (pictures[i].channels == 1) spec.channelnames = {"Y"};
-    spec.attribute("oiio:ColorSpace", "Linear");
-    spec.attribute("compression", "zip");
+    spec.attribute("oiio:ColorSpace", screen ? "sRGB" : "Linear");
+    if (!screen) spec.attribute("compression", "zip");
     if (count > 1) spec.attribute("oiio:subimagename", pictures[i].name);
     specs.push_back(spec);
   }
@@ -68,7 +70,7 @@ std::string WriteOne(const std::string& ending, const FlatlightPicture& picture,
   if (!output) return OIIO::geterror();
   OIIO::Filesystem::IOVecOutput memory(bytes);
   if (!output->set_ioproxy(&memory)) return "the format " + ending + " cannot be written to memory";
-  const std::vector<OIIO::ImageSpec> specs = Specs(&picture, 1);
+  const std::vector<OIIO::ImageSpec> specs = Specs(ending, &picture, 1);
   if (!output->open(name, specs[0])) return output->geterror();
   if (!output->write_image(OIIO::TypeDesc::FLOAT, picture.pixels)) return output->geterror();
   return output->close() ? "" : output->geterror();
@@ -79,7 +81,7 @@ std::string WriteParts(const std::string& ending, const FlatlightPicture* pictur
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("picture" + ending);
   if (!output) return OIIO::geterror();
   const MemoryFile file;
-  const std::vector<OIIO::ImageSpec> specs = Specs(pictures, count);
+  const std::vector<OIIO::ImageSpec> specs = Specs(ending, pictures, count);
   if (!output->open(file.name(), count, specs.data())) return output->geterror();
   for (int i = 0; i < count; ++i) {
     if (i > 0 && !output->open(file.name(), specs[static_cast<std::size_t>(i)], OIIO::ImageOutput::AppendSubimage))

@@ -13,7 +13,7 @@ struct FlatlightPicture {
   const char* name;
   int width;
   int height;
-  int channels;  // 1 or 3; .hdr knows 3 only.
+  int channels;  // 1 or 3; .hdr knows 3 only. .png takes values in [0, 1], encoded already.
   const float* pixels;
 };
 

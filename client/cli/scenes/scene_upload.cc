@@ -77,8 +77,10 @@ std::string Sha256Hex(const std::string& bytes) {
   return hex;
 }
 
-absl::StatusOr<v1::SceneSource> ProvideScene(Connection& connection, const SceneArgument& scene) {
+absl::StatusOr<v1::SceneSource> ProvideScene(Connection& connection, const SceneArgument& scene,
+                                             const std::vector<v1::Probe>& probes) {
   v1::SceneSource source;
+  for (const v1::Probe& probe : probes) *source.add_probes() = probe;
   if (scene.from_server()) {
     source.set_name(scene.name);
     return source;

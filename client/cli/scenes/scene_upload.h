@@ -3,6 +3,7 @@
 #define FLATLIGHT_CLIENT_CLI_SCENES_SCENE_UPLOAD_H_
 
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -15,8 +16,9 @@ namespace flatlight {
 std::string Sha256Hex(const std::string& bytes);
 
 // The scene as the server knows it, for requests: a file is uploaded by its hash, in chunks, as far as the server does
-// not have it yet. Its mistakes are not looked for here.
-absl::StatusOr<v1::SceneSource> ProvideScene(Connection& connection, const SceneArgument& scene);
+// not have it yet. Its mistakes are not looked for here. `probes`, if any, take the place of the scene's own.
+absl::StatusOr<v1::SceneSource> ProvideScene(Connection& connection, const SceneArgument& scene,
+                                             const std::vector<v1::Probe>& probes = {});
 
 // Asks for every mistake of a scene that was provided.
 absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Connection& connection, const v1::SceneSource& source);

@@ -108,6 +108,57 @@ class EndToEnd(unittest.TestCase):
             self.assertEqual(part["name"].decode(), probe["name"])
             self.assertEqual(row, struct.unpack(f"<{len(row)}f", struct.pack(f"<{len(row)}f", *probe["irradiance"])))
 
+    def read_png(self, name):
+        """Rows of grey values or of triples, of a PNG file of 8 bits."""
+        with open(self.path(name), "rb") as file:
+            data = file.read()
+        at, packed = 8, b""
+        while at < len(data):
+            size, kind = struct.unpack_from(">I4s", data, at)
+            chunk = data[at + 8:at + 8 + size]
+            if kind == b"IHDR":
+                width, height, bits, colour = struct.unpack_from(">IIBB", chunk)
+                self.assertEqual(bits, 8)
+            packed += chunk if kind == b"IDAT" else b""
+            at += 12 + size
+        channels = {0: 1, 2: 3}[colour]
+        raw, above, rows = zlib.decompress(packed), bytes(width * channels), []
+        for y in range(height):
+            kind, *line = raw[y * (width * channels + 1):(y + 1) * (width * channels + 1)]
+            for x in range(len(line)):
+                a = line[x - channels] if x >= channels else 0
+                b, c = above[x], above[x - channels] if x >= channels else 0
+                paeth = min((a, b, c), key=lambda v: abs(a + b - c - v))
+                line[x] = line[x] + (0, a, b, (a + b) // 2, paeth)[kind] & 255
+            above = line
+            rows.append([tuple(line[x:x + channels]) for x in range(0, len(line), channels)])
+        return rows
+
+    def test_a_picture_of_any_scene(self):
+        self.run_cli("render", "gallery:cornell", "--picture", "40x30", "--samples", "64", "-o", "p.png", "-o", "p.json",
+                     "-o", "p.exr")
+        with open(self.path("p.json")) as file:
+            probe, = json.load(file)["probes"]
+        self.assertEqual((probe["quantity"], probe["width"], probe["height"]), ("FLUENCE", 40, 30))
+        self.assertEqual(len(probe["irradiance"]), 3 * 40 * 30)
+        low_x, low_y, high_x, high_y = probe["corners"]
+        self.assertAlmostEqual((high_x - low_x) / 40, (high_y - low_y) / 30)
+        rows = self.read_png("p.png")
+        self.assertEqual((len(rows), len(rows[0])), (30, 40))
+        # The room is x and y from 0 to 2: a red wall on the left, a green one on the right, a lamp above.
+        pixel = lambda x, y: rows[int((high_y - y) / (high_y - low_y) * 30)][int((x - low_x) / (high_x - low_x) * 40)]
+        self.assertGreater(pixel(0.1, 0.5)[0], pixel(0.1, 0.5)[1])
+        self.assertGreater(pixel(1.9, 0.5)[1], pixel(1.9, 0.5)[0])
+        self.assertGreater(sum(pixel(1, 1.9)), sum(pixel(1, 0.1)))
+        self.assertEqual(pixel(-0.1, 1), (0, 0, 0))
+
+    def test_a_picture_is_no_curve(self):
+        self.assertIn("the result is a picture", self.run_cli(
+            "render", "gallery:cornell", "--picture", "4x3", "--samples", "1", "-o", "p.svg", status=5).stderr)
+        for bad in ("0x5", "5", "99999x99999", "17000x1"):
+            self.assertIn("picture" if "x" not in bad or bad[0] == "0" else "allowed", self.run_cli(
+                "render", "gallery:cornell", "--picture", bad, status=2).stderr)
+
     def read_exr(self, data):
         """The attributes of each part of a multi-part OpenEXR file, and its pixels: one row of one channel of floats."""
         parts, at = [], 8

@@ -136,8 +136,8 @@ TEST(SceneTest, EachMistakeNamesPlaceValueAndWhatIsAllowed) {
       {[&](auto& s) {
          s.probes[0].points.push_back({{0, 1}, {0, 1}});
        },
-       "probes[0] ", "both a curve and points"},
-      {[&](auto& s) { s.probes[0].curve.reset(); }, "probes[0] ", "neither a curve nor points"},
+       "probes[0] ", "more than one of curve, points and fluence"},
+      {[&](auto& s) { s.probes[0].curve.reset(); }, "probes[0] ", "none of curve, points and fluence"},
   };
   for (const Case& c : cases) {
     SceneDescription scene = GoodScene();
@@ -145,6 +145,66 @@ TEST(SceneTest, EachMistakeNamesPlaceValueAndWhatIsAllowed) {
     EXPECT_THAT(Mistakes(scene), testing::Contains(testing::AllOf(testing::StartsWith(c.path), HasSubstr(c.message))))
         << c.path << c.message;
   }
+}
+
+SceneDescription SceneWithPicture(const FluenceDescription& picture) {
+  SceneDescription scene = GoodScene();
+  scene.probes[0] = ProbeDescription();
+  scene.probes[0].name = "light";
+  scene.probes[0].fluence = picture;
+  return scene;
+}
+
+TEST(SceneTest, MistakesInPictures) {
+  struct Case {
+    FluenceDescription picture;
+    std::string message;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Case> cases = {
+      {{Point2{0, 0}, Point2{1, 1}, {}, 5}, "probes[0].fluence.width is missing"},
+      {{Point2{0, 0}, Point2{1, 1}, 0, 5}, "probes[0].fluence.width is 0; allowed: 1 to 16384"},
+      {{Point2{0, 0}, Point2{1, 1}, 5, 16385}, "probes[0].fluence.height is 16385; allowed: 1 to 16384"},
+      {{Point2{0, 0}, Point2{1, 1}, 2048, 2048}, "probes have 4194304 pixels; at most 2097152 are allowed"},
+      {{Point2{0, 0}, Point2{0, 1}, 5, 5}, "probes[0].fluence.max.x is 0; allowed: above min.x, 0"},
+      {{Point2{0, 2}, Point2{1, 1}, 5, 5}, "probes[0].fluence.max.y is 1; allowed: above min.y, 2"},
+      {{Point2{0, nan}, Point2{1, 1}, 5, 5}, "probes[0].fluence.min.y is nan"},
+      {{Point2{0, 0}, {}, 5, 5}, "probes[0].fluence has min but no max"},
+      {{{}, Point2{0, 0}, 5, 5}, "probes[0].fluence has max but no min"},
+  };
+  for (const Case& c : cases)
+    EXPECT_THAT(Mistakes(SceneWithPicture(c.picture)), testing::Contains(HasSubstr(c.message)));
+  SceneDescription empty = SceneWithPicture({{}, {}, 5, 5});
+  empty.curves.clear();
+  EXPECT_THAT(Mistakes(empty), testing::Contains(HasSubstr("no curves to put into the picture")));
+}
+
+// The curves of the good scene lie in [-2, 2] x [0, 2].
+TEST(SceneTest, APictureOfTheWholeSceneHasAMarginAndSquarePixels) {
+  for (const auto& [width, height] : {std::pair{400u, 100u}, {50u, 200u}, {7u, 7u}}) {
+    const auto scene = Build(SceneWithPicture({{}, {}, width, height}));
+    ASSERT_TRUE(scene->probes()[0].picture.has_value());
+    const PixelGrid& grid = *scene->probes()[0].picture;
+    const Point2 low = scene->ToWorld(grid.low), high = scene->ToWorld(grid.high);
+    EXPECT_NEAR((high.x - low.x) / width, (high.y - low.y) / height, 1e-12);
+    EXPECT_NEAR(0.5 * (low.x + high.x), 0, 1e-12);
+    EXPECT_NEAR(0.5 * (low.y + high.y), 1, 1e-12);
+    EXPECT_NEAR(std::min(high.x - 2, high.y - 2), 0.12, 1e-12) << "one of the sides has just the margin";
+    EXPECT_EQ(scene->traits().pixels, std::size_t{width} * height);
+    EXPECT_EQ(scene->traits().probe_points, 0u);
+  }
+}
+
+TEST(SceneTest, PicturesCountInTheProbesHash) {
+  std::set<std::string> hashes{Build(GoodScene())->probe_hash()};
+  const auto differs = [&](const FluenceDescription& picture) {
+    return hashes.insert(Build(SceneWithPicture(picture))->probe_hash()).second;
+  };
+  EXPECT_TRUE(differs({{}, {}, 5, 6}));
+  EXPECT_TRUE(differs({{}, {}, 6, 5}));
+  EXPECT_TRUE(differs({Point2{0, 0}, Point2{1, 1}, 5, 6}));
+  EXPECT_TRUE(differs({Point2{0, 0}, Point2{1, 1.5}, 5, 6}));
+  EXPECT_FALSE(differs({Point2{0, 0}, Point2{1, 1.5}, 5, 6}));
 }
 
 TEST(SceneTest, AllMistakesAreReported) {

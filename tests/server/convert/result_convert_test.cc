@@ -50,6 +50,7 @@ TEST(ResultConvertTest, PositionsAndArcLengthAreInWorldUnits) {
   v1::ProbeResult out;
   FillProbeGeometry(SceneOutline(*scene), 0, 0, 3, out);
   EXPECT_EQ(out.name(), "floor");
+  EXPECT_EQ(out.quantity(), v1::ProbeResult::IRRADIANCE);
   EXPECT_THAT(out.positions(), Pointwise(DoubleNear(1e-9), std::vector<double>{1002, 50, 1006, 50, 1010, 50}));
   EXPECT_THAT(out.normals(), Pointwise(DoubleNear(1e-15), std::vector<double>{0, 1, 0, 1, 0, 1}));
   EXPECT_THAT(out.arc_length(), Pointwise(DoubleNear(1e-9), std::vector<double>{2, 6, 10}));
@@ -91,7 +92,6 @@ TEST(ResultConvertTest, EveryArrayReachesItsOwnField) {
   field.probes.push_back({{1}, {2}, {3}, {4}, {5}, {6}, {7}});
   v1::ProbeResult out;
   FillProbeValues(field, 1, 0, 0, 1, out);
-  EXPECT_EQ(out.quantity(), v1::ProbeResult::IRRADIANCE);
   EXPECT_THAT(out.irradiance(), ElementsAre(1));
   EXPECT_THAT(out.standard_error(), ElementsAre(2));
   EXPECT_THAT(out.gradient(), ElementsAre(3));
@@ -117,6 +117,33 @@ TEST(ResultConvertTest, AResultHasAllProbes) {
   EXPECT_FALSE(result.statistics().has_error_bound());
   field.error_bound = 1e-9;
   EXPECT_EQ(ResultToProto(SceneOutline(*scene), field).statistics().error_bound(), 1e-9);
+}
+
+TEST(ResultConvertTest, APictureHasItsPlaceAndNoPoints) {
+  v1::Scene proto;
+  Diagnostics diagnostics;
+  const auto scene = SceneFromJson(R"({"name":"far","plane":{
+      "materials":[{"name":"red","lambertian":{"reflectance":[0.5]}}],
+      "curves":[{"name":"floor","segment":{"a":{"x":1000,"y":50},"b":{"x":1012,"y":50}},"material":"red"}]},
+      "probes":[{"name":"light","fluence":{"min":{"x":1001,"y":51},"max":{"x":1003,"y":54},"width":2,"height":3}}]})",
+                                   proto, diagnostics);
+  ASSERT_NE(scene, nullptr);
+  Field field;
+  field.probes.resize(1);
+  field.probes[0].irradiance = {1, 2, 3, 4, 5, 6};
+  field.probes[0].standard_error = {6, 5, 4, 3, 2, 1};
+  const v1::RenderResult result = ResultToProto(SceneOutline(*scene), field);
+  const v1::ProbeResult& light = result.probes(0);
+  EXPECT_EQ(light.quantity(), v1::ProbeResult::FLUENCE);
+  EXPECT_EQ(light.count(), 6u);
+  EXPECT_EQ(light.width(), 2u);
+  EXPECT_EQ(light.height(), 3u);
+  EXPECT_THAT(light.corners(), Pointwise(DoubleNear(1e-9), std::vector<double>{1001, 51, 1003, 54}));
+  EXPECT_THAT(light.positions(), IsEmpty());
+  EXPECT_THAT(light.normals(), IsEmpty());
+  EXPECT_THAT(light.irradiance(), ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(light.standard_error(), ElementsAre(6, 5, 4, 3, 2, 1));
+  EXPECT_EQ(TraitsToProto(scene->traits()).pixels(), 6);
 }
 
 TEST(ResultConvertTest, EndReasons) {

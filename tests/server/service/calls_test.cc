@@ -20,6 +20,7 @@ using testing::FakeRenderings;
 using testing::FloorAndLampProto;
 using ::testing::HasSubstr;
 using testing::LoopbackServer;
+using ::testing::Not;
 using testing::ReasonOf;
 using testing::TestContext;
 using enum grpc::StatusCode;
@@ -197,6 +198,42 @@ TEST_F(CallsTest, AHugeProbeIsRefusedBeforeItIsBuilt) {
   const grpc::Status status = Create(server, request, job);
   EXPECT_EQ(status.error_code(), INVALID_ARGUMENT);
   EXPECT_THAT(status.error_message(), HasSubstr("1000000"));
+}
+
+TEST_F(CallsTest, AHugePictureIsRefusedBeforeItIsBuilt) {
+  LoopbackServer server(Options());
+  v1::CreateJobRequest request = NewJob();
+  v1::FluencePicture& picture = *request.mutable_scene()->add_probes()->mutable_fluence();
+  picture.set_width(4'294'967'295u);
+  picture.set_height(4'294'967'295u);
+  v1::Job job;
+  const grpc::Status status = Create(server, request, job);
+  EXPECT_EQ(status.error_code(), INVALID_ARGUMENT);
+  EXPECT_THAT(status.error_message(), HasSubstr("2097152"));
+}
+
+// Of a scene by name and of one in the request; the scene itself is as it was.
+TEST_F(CallsTest, ARequestMayAskForOtherProbes) {
+  LoopbackServer server(Options());
+  v1::CreateJobRequest request = NewJob();
+  v1::Probe& probe = *request.mutable_scene()->add_probes();
+  probe.set_name("light");
+  probe.mutable_fluence()->set_width(3);
+  probe.mutable_fluence()->set_height(2);
+  for (const char* name : {"", "scenes/penumbra"}) {
+    if (*name != '\0') request.mutable_scene()->set_name(name);
+    TestContext context;
+    v1::ExplainJobRequest explain;
+    *explain.mutable_scene() = request.scene();
+    v1::ExplainJobResponse response;
+    const grpc::Status status = server.render().ExplainJob(&context, explain, &response);
+    ASSERT_TRUE(status.ok()) << status.error_message();
+    EXPECT_THAT(response.plan().summary(), HasSubstr("6 pixels"));
+    explain.mutable_scene()->clear_probes();
+    TestContext again;
+    ASSERT_TRUE(server.render().ExplainJob(&again, explain, &response).ok());
+    EXPECT_THAT(response.plan().summary(), Not(HasSubstr("pixel")));
+  }
 }
 
 TEST_F(CallsTest, TheSameRequestIdMakesOneJob) {

@@ -68,6 +68,14 @@ SceneMaker& SceneMaker::PointProbe(Point2 position, Vector2 normal) {
   return *this;
 }
 
+SceneMaker& SceneMaker::Picture(Point2 min, Point2 max, std::uint32_t width, std::uint32_t height) {
+  ProbeDescription probe;
+  probe.name = "picture" + std::to_string(description_.probes.size());
+  probe.fluence = FluenceDescription{min, max, width, height};
+  description_.probes.push_back(std::move(probe));
+  return *this;
+}
+
 std::shared_ptr<const Scene> SceneMaker::Build() const {
   SceneDescription description = description_;
   if (description.name.empty()) description.name = "test";

@@ -37,6 +37,7 @@ class SceneMaker {
   SceneMaker& Environment(SpectrumValues radiance);
   SceneMaker& Probe(const std::string& curve, std::uint32_t count, Side side = Side::kFront);
   SceneMaker& PointProbe(Point2 position, Vector2 normal);
+  SceneMaker& Picture(Point2 min, Point2 max, std::uint32_t width, std::uint32_t height);
 
   const SceneDescription& description() const { return description_; }
   std::shared_ptr<const Scene> Build() const;

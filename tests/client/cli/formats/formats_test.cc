@@ -76,6 +76,16 @@ TEST(ResultShape, NamesTheBadNumber) {
   EXPECT_THAT(FindResultDefect(result), HasSubstr("probes[1].gradient has 1 value"));
 }
 
+TEST(ResultShape, PicturesAreAsLargeAsTheySay) {
+  v1::RenderResult result;
+  v1::ProbeResult& probe = AddProbe(result, "picture", 6);
+  probe.set_width(3);
+  probe.set_height(2);
+  EXPECT_EQ(FindResultDefect(result), "");
+  probe.set_height(3);
+  EXPECT_EQ(FindResultDefect(result), "probes[0].count is 6: must be width * height, 3 * 3");
+}
+
 TEST(Csv, HasOnlyTheColumnsThatExist) {
   v1::RenderResult result;
   AddProbe(result, "a, \"b\"", 2);

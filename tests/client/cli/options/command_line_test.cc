@@ -122,6 +122,19 @@ TEST(CommandLine, AllOfRender) {
   EXPECT_THAT(settings.no_skip(), ElementsAre("colour", "visibility"));
 }
 
+TEST(CommandLine, PicturesTakeThePlaceOfProbes) {
+  const auto line = Parse({"render", "a", "--picture", "800x600"});
+  ASSERT_TRUE(line.ok()) << line.status();
+  ASSERT_EQ(line->probes.size(), 1U);
+  EXPECT_EQ(line->probes[0].fluence().width(), 800U);
+  EXPECT_EQ(line->probes[0].fluence().height(), 600U);
+  EXPECT_FALSE(line->probes[0].fluence().has_min());
+  EXPECT_THAT(Parse({"render", "a"})->probes, ::testing::IsEmpty());
+  for (const char* bad : {"", "x", "800", "800x", "x600", "0x5", "5x0", "8*6", "-8x6", "8x6x7", "8.5x6"}) {
+    EXPECT_THAT(ErrorOf({"render", "a", "--picture", bad}), HasSubstr("--picture")) << bad;
+  }
+}
+
 TEST(CommandLine, NothingIsSetThatWasNotAskedFor) {
   const auto line = Parse({"submit", "scene.json"});
   ASSERT_TRUE(line.ok());

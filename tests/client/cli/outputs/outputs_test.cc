@@ -9,12 +9,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "client/cli/outputs/atomic_file.h"
 #include "client/cli/outputs/picture_writer.h"
+#include "client/cli/outputs/tone_mapping.h"
 
 namespace flatlight {
 namespace {
@@ -169,6 +171,57 @@ TEST(Pictures, RowsAreStackedInColour) {
   EXPECT_EQ(stacked.width, 2);
   EXPECT_EQ(stacked.height, 2);
   EXPECT_THAT(stacked.pixels, ::testing::ElementsAre(1, 1, 1, 0, 0, 0, 2, 2, 2, 3, 3, 3));
+}
+
+v1::RenderResult PictureResult() {
+  v1::RenderResult result;
+  v1::ProbeResult& probe = *result.add_probes();
+  probe.set_count(6);
+  probe.set_channels(1);
+  probe.set_width(2);
+  probe.set_height(3);
+  for (int i = 0; i < 6; ++i) probe.add_irradiance(i);
+  return result;
+}
+
+TEST(Pictures, TheLowestRowIsTheLast) {
+  const std::vector<Picture> pictures = PicturesOf(PictureResult());
+  ASSERT_EQ(pictures.size(), 1U);
+  EXPECT_EQ(pictures[0].width, 2);
+  EXPECT_EQ(pictures[0].height, 3);
+  EXPECT_THAT(pictures[0].pixels, ::testing::ElementsAre(4, 5, 2, 3, 0, 1));
+  EXPECT_TRUE(HasPictures(PictureResult()));
+  EXPECT_FALSE(HasPictures(v1::RenderResult()));
+}
+
+TEST(ToneMapping, KeepsOrderHueAndRange) {
+  Picture picture{"p", 100, 1, 3, {}};
+  for (int i = 0; i < 100; ++i) {
+    const float y = 1e-3F * static_cast<float>(std::pow(1.1, i));
+    picture.pixels.insert(picture.pixels.end(), {y, 0.5F * y, 0});
+  }
+  const Picture mapped = ToneMapped(picture);
+  ASSERT_EQ(mapped.pixels.size(), picture.pixels.size());
+  for (std::size_t i = 0; i < mapped.pixels.size(); i += 3) {
+    EXPECT_GE(mapped.pixels[i], 0);
+    EXPECT_LE(mapped.pixels[i], 1);
+    EXPECT_EQ(mapped.pixels[i + 2], 0);
+    EXPECT_GT(mapped.pixels[i], mapped.pixels[i + 1]);
+    EXPECT_GE(mapped.pixels[i], i > 0 ? mapped.pixels[i - 3] : 0);
+  }
+  EXPECT_EQ(mapped.pixels[297], 1) << "the brightest is white";
+}
+
+// The light's unit is free: a picture and one a thousand times as bright look the same.
+TEST(ToneMapping, AdaptsToTheLight) {
+  Picture dim{"p", 50, 1, 1, {}}, bright{"p", 50, 1, 1, {}};
+  for (int i = 0; i < 50; ++i) {
+    dim.pixels.push_back(static_cast<float>(i));
+    bright.pixels.push_back(1024 * static_cast<float>(i));
+  }
+  EXPECT_THAT(ToneMapped(bright).pixels, ::testing::Pointwise(::testing::FloatNear(1e-6F), ToneMapped(dim).pixels));
+  const Picture dark{"p", 3, 1, 1, {0, 0, 0}};
+  EXPECT_EQ(ToneMapped(dark).pixels, dark.pixels);
 }
 
 }  // namespace

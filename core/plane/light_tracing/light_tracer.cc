@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/plane/light_tracing/light_tracer.h"
+
+#include <cmath>
+#include <limits>
+
+namespace flatlight {
+namespace {
+
+// Light that nothing absorbs, in glass or among perfect mirrors, would go on for ever.
+constexpr std::uint32_t kMostLossless = 64;
+constexpr double kLosslessSurvival = 0.9;
+
+}  // namespace
+
+LightTracer::LightTracer(std::shared_ptr<const RayCaster> caster, const Box& seen,
+                         std::optional<std::uint32_t> max_bounces)
+    : caster_(std::move(caster)),
+      scene_(caster_->scene()),
+      most_bounces_(max_bounces.value_or(std::numeric_limits<std::uint32_t>::max())),
+      sources_(scene_, seen),
+      far_(8 + 4 * Length(seen.high - Point2{}) + 4 * Length(seen.low - Point2{})) {
+  for (const Curve& curve : scene_.curves()) {
+    scatterings_.emplace_back(curve.material, Side::kFront);
+    scatterings_.emplace_back(curve.material, Side::kBack);
+  }
+}
+
+double LightTracer::AddPath(const SampleStream& stream, std::uint32_t index, std::span<FluenceImage> images) const {
+  const SamplePair start = stream.Pair(index, 0);
+  const EmittedRay emitted = sources_.Emit(start.u, start.v);
+  SurfacePoint at = emitted.from;
+  Vector2 direction = emitted.direction;
+  Spectrum flux = emitted.flux;
+  double rays = 0;
+  for (std::uint32_t depth = 0; !flux.IsBlack(); ++depth) {
+    const std::optional<Hit> hit = caster_->ClosestHit(at, direction);
+    ++rays;
+    // From a light far away the way to the images may be long.
+    const Point2 end = hit ? hit->position : at.position + (far_ + Length(at.position - Point2{})) * direction;
+    for (FluenceImage& image : images) image.AddLine(at.position, end, flux);
+    if (!hit || depth == most_bounces_) break;
+    if (!Scatter(*hit, stream, index, depth, direction, flux)) break;
+    at = {hit->position, hit->element};
+  }
+  return rays;
+}
+
+bool LightTracer::Scatter(const Hit& hit, const SampleStream& stream, std::uint32_t index, std::uint32_t depth,
+                          Vector2& direction, Spectrum& flux) const {
+  const auto curve = static_cast<std::size_t>(scene_.element(hit.element).curve);
+  const bool front = Dot(hit.normal, direction) < 0;
+  const Vector2 normal = front ? hit.normal : -hit.normal;
+  const LocalDirection arriving{-Dot(Right(normal), direction), -Dot(normal, direction)};
+  const SamplePair random = stream.Pair(index, depth + 1);
+  // Reciprocal: where light comes from that leaves along `arriving` is where light goes that comes from there.
+  const std::optional<ScatterSample> sample =
+      scatterings_[2 * curve + (front ? 0 : 1)].Sample(arriving, random.v, random.u);
+  if (!sample.has_value()) return false;
+  const double before = flux.Max();
+  flux = sample->weight * flux;
+  double survival = std::min(1.0, flux.Max() / before);
+  if (depth > kMostLossless) survival = std::min(survival, kLosslessSurvival);
+  if (stream.Single(index, depth) >= survival) return false;
+  flux = (1 / survival) * flux;
+  direction = Normalized(sample->in.sine * Right(normal) + sample->in.cosine * normal);
+  return true;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_PLANE_LIGHT_TRACING_LIGHT_TRACER_H_
+#define FLATLIGHT_CORE_PLANE_LIGHT_TRACING_LIGHT_TRACER_H_
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/plane/light_tracing/fluence_image.h"
+#include "core/plane/light_tracing/light_sources.h"
+#include "core/plane/materials/scattering.h"
+#include "core/plane/ray_caster.h"
+#include "core/sampling/sample_stream.h"
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+// Light followed from its sources: every way of a path through an image is light in it. Unbiased, caustics included,
+// for a pixel is met by light as it is: nothing is asked from the other side. Paths go on with the chance with which
+// light is reflected, so that all that are left carry alike much.
+class LightTracer {
+ public:
+  // `seen`: encloses the images. max_bounces: reflections and refractions before light counts no more; absent: all.
+  LightTracer(std::shared_ptr<const RayCaster> caster, const Box& seen, std::optional<std::uint32_t> max_bounces);
+
+  const LightSources& sources() const { return sources_; }
+
+  // Adds path `index` of a stream to all images; its mean is the fluence of the scene. Requires a source. Returns the
+  // rays cast.
+  double AddPath(const SampleStream& stream, std::uint32_t index, std::span<FluenceImage> images) const;
+
+ private:
+  // Changes a path's flux and direction where it meets a curve. False if it ends there.
+  bool Scatter(const Hit& hit, const SampleStream& stream, std::uint32_t index, std::uint32_t depth, Vector2& direction,
+               Spectrum& flux) const;
+
+  std::shared_ptr<const RayCaster> caster_;
+  const Scene& scene_;
+  std::uint32_t most_bounces_;
+  LightSources sources_;
+  double far_;                           // Beyond everything.
+  std::vector<Scattering> scatterings_;  // By curve, front and back.
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_PLANE_LIGHT_TRACING_LIGHT_TRACER_H_
