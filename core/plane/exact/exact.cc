@@ -47,10 +47,12 @@ class LightSum {
 
   // From the edge in Next() on there is another radiance. A stretch of one radiance counts as a whole, whatever
   // elements it is made of.
-  void Turn(const Spectrum& after) {
+  void Turn(const Spectrum& after) { Turn(after, coordinate_error_); }
+  // The same, where the edge is known to another accuracy than coordinates are.
+  void Turn(const Spectrum& after, double coordinate_error) {
     const Edge& edge = edges_[next_];
     const Edge& begin = edges_[1 - next_];
-    const EdgeErrors errors = BoundErrors(edge, receiver_.curvature, coordinate_error_);
+    const EdgeErrors errors = BoundErrors(edge, receiver_.curvature, coordinate_error);
     const EdgeDerivatives derivatives = derivatives_ > 0 ? Derive(edge, receiver_.curvature) : EdgeDerivatives{};
     const double extent = lit_ ? SineDifference(begin, edge, receiver_) : 0;
     lit_ = false;
@@ -86,8 +88,9 @@ class LightSum {
 
 }  // namespace
 
-ExactSolver::ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions options)
-    : scene_(scene), options_(options), gatherer_(scene, bvh), sweep_(scene) {
+ExactSolver::ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions options, const Triangulation* triangulation)
+    : scene_(scene), options_(options), gatherer_(scene, bvh), sweep_(scene), triangulation_(triangulation) {
+  if (triangulation) view_.emplace(scene, *triangulation);
   for (std::size_t e = 0; e < scene.elements().size(); ++e) {
     const ElementId id = static_cast<ElementId>(e);
     const Curve& curve = scene.curve_of(id);
@@ -122,6 +125,10 @@ ExactValue ExactSolver::Evaluate(const Receiver& receiver) {
 template <int kChannels>
 void ExactSolver::Add(const Receiver& receiver, ExactValue& value) {
   if (options_.occlusion) {
+    if (view_) {
+      if (AddView<kChannels>(receiver, value)) return;
+      ++undecided_;
+    }
     const Envelope& envelope = gatherer_.Gather(receiver);
     if (!envelope.doubtful()) {
       AddEnvelope<kChannels>(envelope, receiver, value);
@@ -138,6 +145,36 @@ void ExactSolver::Add(const Receiver& receiver, ExactValue& value) {
       }
     }
   }
+}
+
+template <int kChannels>
+bool ExactSolver::AddView(const Receiver& receiver, ExactValue& value) {
+  LightSum<kChannels> sum(scene_, options_, receiver, value);
+  const bool decided = view_->Walk(receiver, [&](const ViewLimit& limit, Gate gate) {
+    Spectrum after;
+    if (gate == Triangulation::kNothing) {
+      after = scene_.environment();
+    } else if (!Triangulation::IsDark(gate)) {
+      const auto element = static_cast<ElementId>(Triangulation::ElementOf(gate));
+      if constexpr (kChannels == 1) {
+        after[0] = emissions_[static_cast<std::size_t>(element)].first_channel;
+      } else {
+        after = scene_.curve_of(element).radiance;
+      }
+    }
+    if (!sum.Changes(after)) return;
+    if (limit.vertex == ViewLimit::kHorizon) {
+      sum.Next() = HorizonEdge(Dot(receiver.tangent, {limit.x, limit.y}) > 0 ? 1 : -1);
+      sum.Turn(after);
+    } else {
+      const Vector2 to{limit.x, limit.y};
+      SetVertexEdge(Dot(receiver.tangent, to), Dot(receiver.normal, to), triangulation_->vertices()[limit.vertex],
+                    sum.Next());
+      sum.Turn(after, triangulation_->Uncertain(limit.vertex));
+    }
+  });
+  if (!decided) value = ExactValue();
+  return decided;
 }
 
 template <int kChannels>

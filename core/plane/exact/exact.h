@@ -8,11 +8,14 @@
 #ifndef FLATLIGHT_CORE_PLANE_EXACT_EXACT_H_
 #define FLATLIGHT_CORE_PLANE_EXACT_EXACT_H_
 
+#include <optional>
 #include <vector>
 
 #include "core/plane/bvh.h"
 #include "core/plane/exact/gather.h"
 #include "core/plane/exact/sweep.h"
+#include "core/plane/triangulation/triangulation.h"
+#include "core/plane/triangulation/view.h"
 #include "core/scene/scene.h"
 
 namespace flatlight {
@@ -41,12 +44,16 @@ struct ExactOptions {
 // Holds working memory: one for each thread.
 class ExactSolver {
  public:
-  ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions options);
+  // With a triangulation (see Triangulation::coordinate_error), what it can decide is found in it, and the rest in the
+  // tree. The values are the same; those of the first kind come sooner.
+  ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions options, const Triangulation* triangulation = nullptr);
 
   ExactValue Evaluate(const Receiver& receiver);
 
-  // Boxes and elements looked at so far.
-  double tests() const { return gatherer_.tests(); }
+  // Boxes, elements and triangles looked at so far.
+  double tests() const { return gatherer_.tests() + (view_ ? view_->steps() : 0); }
+  // Points so far that were left to the tree, though there is a triangulation.
+  double undecided() const { return undecided_; }
 
  private:
   // What the last sum needs of an element, close together.
@@ -58,6 +65,9 @@ class ExactSolver {
 
   template <int kChannels>
   void Add(const Receiver& receiver, ExactValue& value);
+  // False if the triangulation cannot decide what is seen; `value` is then as it was.
+  template <int kChannels>
+  bool AddView(const Receiver& receiver, ExactValue& value);
   template <int kChannels>
   void AddEnvelope(const Envelope& envelope, const Receiver& receiver, ExactValue& value) const;
   template <int kChannels>
@@ -68,6 +78,9 @@ class ExactSolver {
   ExactOptions options_;
   Gatherer gatherer_;
   Sweep sweep_;
+  const Triangulation* triangulation_;
+  std::optional<View> view_;
+  double undecided_ = 0;
   std::vector<Emission> emissions_;  // By element.
   std::vector<ElementId> emitters_;  // Where occlusion is left out.
   std::vector<Part> single_;

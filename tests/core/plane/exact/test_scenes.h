@@ -14,6 +14,7 @@
 
 #include "core/plane/bvh.h"
 #include "core/plane/exact/exact.h"
+#include "core/plane/triangulation/triangulation.h"
 #include "core/scene/scene.h"
 
 namespace flatlight {
@@ -57,15 +58,30 @@ struct WorldValue {
   double irradiance, gradient, hessian, irradiance_error, gradient_error, hessian_error;
 };
 
-inline std::vector<WorldValue> Solve(const Scene& scene, std::size_t probe) {
+inline std::vector<WorldValue> Solve(const Scene& scene, std::size_t probe, const Triangulation* triangulation) {
   const Bvh bvh(scene);
-  ExactSolver solver(scene, bvh, {});
+  ExactSolver solver(scene, bvh, {}, triangulation);
   std::vector<WorldValue> values;
   const double l = scene.frame().radiance_scale, k = scene.frame().scale;
   for (const Receiver& receiver : scene.probes()[probe].receivers) {
     const ExactValue v = solver.Evaluate(receiver);
     values.push_back({v.irradiance[0] * l, v.gradient[0] * l / k, v.hessian[0] * l / k / k, v.irradiance_error[0] * l,
                       v.gradient_error[0] * l / k, v.hessian_error[0] * l / k / k});
+  }
+  return values;
+}
+
+// By the tree; where the scene can be triangulated that must agree.
+inline std::vector<WorldValue> Solve(const Scene& scene, std::size_t probe) {
+  std::vector<WorldValue> values = Solve(scene, probe, nullptr);
+  const auto triangulation = Triangulation::Of(scene);
+  if (!triangulation) return values;
+  const std::vector<WorldValue> others = Solve(scene, probe, triangulation.get());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const WorldValue &a = values[i], &b = others[i];
+    EXPECT_NEAR(a.irradiance, b.irradiance, a.irradiance_error + b.irradiance_error) << "by triangles, point " << i;
+    EXPECT_NEAR(a.gradient, b.gradient, a.gradient_error + b.gradient_error) << "by triangles, point " << i;
+    EXPECT_NEAR(a.hessian, b.hessian, a.hessian_error + b.hessian_error) << "by triangles, point " << i;
   }
   return values;
 }
