@@ -43,9 +43,10 @@ struct WorldUnits {
 }  // namespace
 
 ExactRendering::ExactRendering(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
-                               const Plan& plan)
+                               std::shared_ptr<const Triangulation> triangulation, const Plan& plan)
     : scene_(std::move(scene)),
       caster_(std::move(caster)),
+      triangulation_(std::move(triangulation)),
       options_(OptionsOf(plan)),
       derivatives_(OrderOf(plan)),
       dark_(plan.Takes(skip::kEmission)),
@@ -107,7 +108,7 @@ std::unique_ptr<ExactSolver> ExactRendering::TakeSolver() {
       return solver;
     }
   }
-  return std::make_unique<ExactSolver>(*scene_, caster_->bvh(), options_);
+  return std::make_unique<ExactSolver>(*scene_, caster_->bvh(), options_, triangulation_.get());
 }
 
 void ExactRendering::ReturnSolver(std::unique_ptr<ExactSolver> solver) {

@@ -11,6 +11,7 @@
 #include "core/plane/exact/exact.h"
 #include "core/plane/exact/light_solver.h"
 #include "core/plane/ray_caster.h"
+#include "core/plane/triangulation/triangulation.h"
 #include "core/render/rendering.h"
 
 namespace flatlight {
@@ -18,8 +19,10 @@ namespace flatlight {
 // Direct light in closed form, point after point. A probe appears in the field when all its points are done.
 class ExactRendering final : public Rendering {
  public:
-  // The caster's scene has the world of `scene`; it may be null where nothing emits.
-  ExactRendering(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster, const Plan& plan);
+  // The caster's scene has the world of `scene`, and so has the triangulation's. The caster may be null where nothing
+  // emits, the triangulation anywhere.
+  ExactRendering(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
+                 std::shared_ptr<const Triangulation> triangulation, const Plan& plan);
 
   void Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
                Clock::Duration budget) override;
@@ -37,6 +40,7 @@ class ExactRendering final : public Rendering {
 
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const RayCaster> caster_;
+  std::shared_ptr<const Triangulation> triangulation_;
   ExactOptions options_;
   std::optional<LightSolver> lights_;  // If there are any.
   int derivatives_;                    // Asked for, whatever is computed.

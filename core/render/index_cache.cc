@@ -16,41 +16,77 @@ std::shared_ptr<const RayCaster> IndexCache::For(const std::shared_ptr<const Sce
       caster = std::make_shared<const RayCaster>(scene, std::move(*bvh));
   }
   if (!caster) caster = std::make_shared<const RayCaster>(scene);
-  Keep(caster);
+  Keep({caster, nullptr, std::nullopt});
   return caster;
+}
+
+std::shared_ptr<const Triangulation> IndexCache::TrianglesFor(const std::shared_ptr<const Scene>& scene) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = Position(*scene);
+    // Free points have a part in how well coordinates are known.
+    if (found != entries_.end() && found->triangulation &&
+        found->triangulation->coordinate_error() == scene->coordinate_error()) {
+      return found->triangulation;
+    }
+    if (found != entries_.end() && found->none == scene->coordinate_error()) return nullptr;
+  }
+  // Without the lock, as before.
+  std::shared_ptr<const Triangulation> triangulation = Triangulation::Of(*scene);
+  Entry entry;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = Position(*scene);
+    if (found == entries_.end()) return triangulation;
+    if (!triangulation) {
+      found->none = scene->coordinate_error();
+      return nullptr;
+    }
+    entry = *found;
+    entry.triangulation = triangulation;
+    if (entry.size() > max_elements_) return triangulation;
+    elements_ -= found->size();
+    entries_.erase(found);
+  }
+  Keep(std::move(entry));
+  return triangulation;
+}
+
+IndexCache::Entries::iterator IndexCache::Position(const Scene& scene) {
+  // The world's hash does not tell where free points moved the frame of a world without curves.
+  return std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    const Scene& other = entry.caster->scene();
+    return other.world_hash() == scene.world_hash() && other.elements().size() == scene.elements().size() &&
+           !scene.elements().empty();
+  });
 }
 
 std::shared_ptr<const RayCaster> IndexCache::Find(const Scene& scene) {
   const std::lock_guard lock(mutex_);
-  // The world's hash does not tell where free points moved the frame of a world without curves.
-  const auto found = std::find_if(casters_.begin(), casters_.end(), [&](const auto& caster) {
-    const Scene& other = caster->scene();
-    return other.world_hash() == scene.world_hash() && other.elements().size() == scene.elements().size() &&
-           !scene.elements().empty();
-  });
-  if (found == casters_.end()) return nullptr;
-  casters_.splice(casters_.begin(), casters_, found);
-  return casters_.front();
+  const auto found = Position(scene);
+  if (found == entries_.end()) return nullptr;
+  entries_.splice(entries_.begin(), entries_, found);
+  return entries_.front().caster;
 }
 
 std::shared_ptr<const RayCaster> IndexCache::FindSimilar(const Scene& scene) {
   const std::lock_guard lock(mutex_);
-  const auto found = std::find_if(casters_.begin(), casters_.end(), [&](const auto& caster) {
-    return caster->scene().elements().size() == scene.elements().size();
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+    return entry.caster->scene().elements().size() == scene.elements().size();
   });
-  return found == casters_.end() ? nullptr : *found;
+  return found == entries_.end() ? nullptr : found->caster;
 }
 
-void IndexCache::Keep(const std::shared_ptr<const RayCaster>& caster) {
-  const std::size_t size = caster->scene().elements().size();
+void IndexCache::Keep(Entry entry) {
+  const std::size_t size = entry.size();
   if (size > max_elements_) return;
-  Casters gone;  // Freed without the lock.
+  Entries gone;  // Freed without the lock.
   const std::lock_guard lock(mutex_);
   while (elements_ + size > max_elements_) {
-    elements_ -= casters_.back()->scene().elements().size();
-    gone.splice(gone.begin(), casters_, std::prev(casters_.end()));
+    elements_ -= entries_.back().size();
+    gone.splice(gone.begin(), entries_, std::prev(entries_.end()));
   }
-  casters_.push_front(caster);
+  entries_.push_front(std::move(entry));
   elements_ += size;
 }
 

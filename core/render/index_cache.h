@@ -6,34 +6,52 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include "core/plane/ray_caster.h"
+#include "core/plane/triangulation/triangulation.h"
 #include "core/scene/scene.h"
 
 namespace flatlight {
 
-// Ray casters of the scenes used last, so that jobs on one world share an index, and an edited world gets the one
-// before it refitted. Safe to use from several threads.
+// Ray casters and triangulations of the scenes used last, so that jobs on one world share them, and an edited world
+// gets the caster before it refitted. Safe to use from several threads.
 class IndexCache {
  public:
-  // Keeps casters of scenes of at most so many elements in all; the one used longest ago goes first.
+  // Keeps casters of scenes of at most so many elements in all, triangulations counted by their memory as elements of
+  // kElementBytes each; what was used longest ago goes first.
   explicit IndexCache(std::size_t max_elements) : max_elements_(max_elements) {}
 
   // A caster whose scene has the world of `scene`: the same curves, elements and coordinates.
   std::shared_ptr<const RayCaster> For(const std::shared_ptr<const Scene>& scene);
 
+  // A triangulation of the scene's world; null where there can be none (see Triangulation::Of).
+  std::shared_ptr<const Triangulation> TrianglesFor(const std::shared_ptr<const Scene>& scene);
+
+  static constexpr std::size_t kElementBytes = 300;  // Of a caster with its scene.
+
  private:
-  using Casters = std::list<std::shared_ptr<const RayCaster>>;
+  struct Entry {
+    std::shared_ptr<const RayCaster> caster;
+    std::shared_ptr<const Triangulation> triangulation;  // Made when it is first wanted.
+    std::optional<double> none;  // The coordinates' accuracy with which there can be no triangulation.
+
+    std::size_t size() const {
+      return caster->scene().elements().size() + (triangulation ? triangulation->bytes() / kElementBytes : 0);
+    }
+  };
+  using Entries = std::list<Entry>;
 
   std::shared_ptr<const RayCaster> Find(const Scene& scene);
+  Entries::iterator Position(const Scene& scene);  // With the lock.
   // The caster used last that an edit could have led from; null if there is none.
   std::shared_ptr<const RayCaster> FindSimilar(const Scene& scene);
-  void Keep(const std::shared_ptr<const RayCaster>& caster);
+  void Keep(Entry entry);
 
   const std::size_t max_elements_;
   std::mutex mutex_;
-  Casters casters_;  // Used last comes first; few. Guarded by mutex_.
-  std::size_t elements_ = 0;
+  Entries entries_;           // Used last comes first; few. Guarded by mutex_.
+  std::size_t elements_ = 0;  // As counted.
 };
 
 }  // namespace flatlight

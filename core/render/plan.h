@@ -38,6 +38,8 @@ struct Plan {
   std::optional<double> picture_samples;  // Paths a pixel; absent if there is none, or if the end is left open.
   std::vector<SkipEntry> skips;
   std::vector<PlanPass> passes;
+  // Exact light looks for what is seen in a triangulation of the plane, where there can be one; else in the tree.
+  bool triangles = false;
   std::string summary;
 
   bool Takes(const std::string& skip) const { return Decided(skip, SkipDecision::kTaken); }

@@ -15,7 +15,8 @@ std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, co
   // In the dark no ray is cast.
   auto caster = plan.Takes(skip::kEmission) ? nullptr : indexes.For(scene);
   if (plan.settings.method == Method::kExact) {
-    return std::make_unique<ExactRendering>(std::move(scene), std::move(caster), plan);
+    auto triangulation = plan.triangles ? indexes.TrianglesFor(scene) : nullptr;
+    return std::make_unique<ExactRendering>(std::move(scene), std::move(caster), std::move(triangulation), plan);
   }
   const SceneTraits& traits = scene->traits();
   if (traits.pixels == 0) return std::make_unique<PathTracingRendering>(std::move(scene), std::move(caster), plan);

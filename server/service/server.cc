@@ -32,7 +32,7 @@ namespace {
 constexpr std::size_t kMaxWaitingQuickBytes = 64u << 20;
 constexpr std::size_t kMaxWaitingSlowBytes = 256u << 20;
 constexpr std::size_t kMaxBuiltSceneBytes = 1u << 30;
-constexpr std::size_t kMaxIndexedElements = 2'000'000;  // Some 300 bytes each, with their scene.
+constexpr std::size_t kMaxIndexedElements = 2'000'000;  // Of IndexCache::kElementBytes each, with their scene.
 constexpr std::chrono::milliseconds kFlush{100};
 constexpr int kQuickThreads = 4;
 constexpr int kSlowThreads = 2;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "core/plane/triangulation/triangulation.h"
 #include "core/scene/description.h"
 #include "core/scene/diagnostic.h"
 #include "core/scene/scene.h"
@@ -76,6 +77,63 @@ TEST(IndexCacheTest, AWorldTooLargeToKeepIsIndexedAllTheSame) {
   const auto caster = cache.For(Rows(0, 8));
   ASSERT_TRUE(caster);
   EXPECT_NE(cache.For(Rows(0, 8)), caster);
+}
+
+TEST(IndexCacheTest, OneWorldHasOneTriangulation) {
+  IndexCache cache(1000);
+  const auto scene = Rows(0, 8);
+  const auto caster = cache.For(scene);
+  const auto triangles = cache.TrianglesFor(scene);
+  ASSERT_TRUE(triangles);
+  EXPECT_EQ(cache.TrianglesFor(Rows(0, 64)), triangles);
+  EXPECT_EQ(cache.For(scene), caster) << "still there";
+  const auto edited = Rows(0.1, 8);
+  cache.For(edited);
+  EXPECT_NE(cache.TrianglesFor(edited), triangles);
+  EXPECT_EQ(cache.TrianglesFor(scene), triangles) << "both are kept";
+}
+
+TEST(IndexCacheTest, TriangulationsCountByTheirMemory) {
+  const auto scene = Rows(0, 8);
+  const std::size_t elements = scene->elements().size();
+  const std::size_t counted = Triangulation::Of(*scene)->bytes() / IndexCache::kElementBytes;
+  IndexCache cache(2 * elements + counted);
+  cache.For(scene);
+  const auto triangles = cache.TrianglesFor(scene);
+  cache.For(Rows(0.1, 8));
+  EXPECT_EQ(cache.TrianglesFor(scene), triangles) << "there is room for both casters and it";
+  const auto caster = cache.For(scene);
+  cache.For(Rows(0.2, 8));
+  EXPECT_EQ(cache.For(scene), caster) << "the one used longest ago went";
+  IndexCache small(elements + counted - 1);
+  const auto alone = small.For(scene);
+  EXPECT_TRUE(small.TrianglesFor(scene));
+  EXPECT_NE(small.TrianglesFor(scene), small.TrianglesFor(scene)) << "no room for it";
+  EXPECT_EQ(small.For(scene), alone);
+}
+
+// Free points far away have a part in how well coordinates are known.
+TEST(IndexCacheTest, ATriangulationIsOfItsCoordinatesAccuracy) {
+  SceneDescription description;
+  description.materials = {{"m", LambertianDescription{{0}}}};
+  description.curves.push_back({"line", SegmentDescription{{1e6, 0}, {1e6 + 1, 0}}, "m", EmissionDescription{{1}}});
+  const auto with_point = [&](double x) {
+    SceneDescription scene = description;
+    ProbeDescription probe;
+    probe.name = "p";
+    probe.points.push_back({{x, 1}, {0, -1}});
+    scene.probes.push_back(probe);
+    Diagnostics diagnostics;
+    return BuildScene(scene, diagnostics);
+  };
+  const auto exact = with_point(1e6), rounded = with_point(1.0 / 3);
+  ASSERT_NE(exact->coordinate_error(), rounded->coordinate_error());
+  ASSERT_EQ(exact->world_hash(), rounded->world_hash());
+  IndexCache cache(1000);
+  for (const auto& scene : {exact, rounded, exact}) {
+    cache.For(scene);
+    EXPECT_EQ(cache.TrianglesFor(scene)->coordinate_error(), scene->coordinate_error());
+  }
 }
 
 }  // namespace

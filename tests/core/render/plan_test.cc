@@ -204,5 +204,25 @@ TEST(PlanTest, SummarySaysWhatWillBeDone) {
             "Path tracing of up to 1 bounce at 20 points, at most 64 paths each, until the error is 1 %, for 5 s.");
 }
 
+TEST(PlanTest, TrianglesWhereTheyPay) {
+  const auto rows = [](int curves, std::uint32_t points, bool arc = false) {
+    SceneMaker maker;
+    for (int i = 0; i < curves; ++i)
+      maker.Segment("s" + std::to_string(i), {0, 0.1 * i}, {1, 0.1 * i + 0.01}, {.radiance = {1}});
+    if (arc) maker.Arc("arc", {{2, 0}, 0.5, 0, 1});
+    return maker.Probe("s0", points).Build();
+  };
+  EXPECT_TRUE(PlanFor(*rows(8, 4)).triangles);
+  EXPECT_EQ(PlanFor(*rows(8, 4)).passes[0].name,
+            "direct light in closed form, through triangles where they can be made");
+  EXPECT_FALSE(PlanFor(*rows(8, 3)).triangles) << "too few points";
+  EXPECT_EQ(PlanFor(*rows(8, 3)).passes[0].name, "direct light in closed form");
+  EXPECT_FALSE(PlanFor(*rows(8, 80, true)).triangles) << "arcs";
+  EXPECT_FALSE(PlanFor(*Black()).triangles) << "nothing blocks";
+  Settings sampled;
+  sampled.method = Method::kPathTracing;
+  EXPECT_FALSE(PlanFor(*rows(8, 4), sampled).triangles);
+}
+
 }  // namespace
 }  // namespace flatlight
