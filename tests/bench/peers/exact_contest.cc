@@ -11,7 +11,9 @@
 
 #include "core/plane/bvh.h"
 #include "core/plane/exact/exact.h"
+#include "core/plane/triangulation/triangulation.h"
 #include "core/scene/scene.h"
+#include "tests/bench/bench_report.h"
 #include "tests/bench/peers/cgal_visibility.h"
 #include "tests/bench/peers/flatlight_scene.h"
 #include "tests/bench/peers/visible_light.h"
@@ -103,7 +105,8 @@ class ExactCase {
         world_(std::move(world)),
         scene_(SceneOf(world_)),
         bvh_(*scene_),
-        solver_(*scene_, bvh_, {2, true, scene_->channels()}),
+        triangulation_(Triangulation::Of(*scene_)),
+        solver_(*scene_, bvh_, {2, true, scene_->channels()}, triangulation_.get()),
         cgal_({world_.segments.begin(), world_.segments.end() - 4}),
         light_(world_.segments, world_.radiance) {}
 
@@ -117,10 +120,38 @@ class ExactCase {
           Question{"light on the floor", FloorPoints(), true, {FloorReceivers(*scene_)}}}) {
       agree = Ask(question, options, rows) && agree;
     }
+    if (options.timing) TimeIndexes(rows);
     return agree;
   }
 
  private:
+  // What both make before the first answer.
+  void TimeIndexes(std::vector<Row>& rows) const {
+    constexpr int kRounds = 5;
+    const std::vector<SegmentDescription> inside(world_.segments.begin(), world_.segments.end() - 4);
+    std::vector<double> ours, cgals, ratios;
+    for (int round = 0; round < kRounds; ++round) {
+      const double start = ThreadSeconds();
+      const Bvh bvh(*scene_);
+      const auto triangulation = Triangulation::Of(*scene_);
+      const double between = ThreadSeconds();
+      const CgalVisibility cgal(inside);
+      const double end = ThreadSeconds();
+      ours.push_back(size_ / (between - start)), cgals.push_back(size_ / (end - between));
+      ratios.push_back(ours.back() / cgals.back());
+    }
+    const Quartiles ratio = QuartilesOf(ratios);
+    const std::string name = "making the index for light";
+    rows.push_back({"flatlight", name, size_, rule_.Name(), "segments/s", {QuartilesOf(ours).median, 1, 1, 1}, 0});
+    rows.push_back({"cgal",
+                    name,
+                    size_,
+                    rule_.Name(),
+                    "segments/s",
+                    {QuartilesOf(cgals).median, ratio.median, ratio.lower, ratio.upper},
+                    0});
+  }
+
   bool Ask(const Question& question, const ContestOptions& options, std::vector<Row>& rows) {
     cgal_.SetQueries(question.points, question.on_floor);
     const double share = DifferingShare(question);
@@ -181,6 +212,7 @@ class ExactCase {
   World world_;
   std::shared_ptr<const Scene> scene_;
   Bvh bvh_;
+  std::shared_ptr<const Triangulation> triangulation_;
   ExactSolver solver_;
   CgalVisibility cgal_;
   VisibleLight light_;

@@ -35,6 +35,7 @@ Failure CheckTree(const SceneDescription& scene, std::uint64_t seed, Tally& tall
 Failure CheckClosed(const SceneDescription& scene, std::uint64_t seed, Tally& tally);
 Failure CheckAgainstRays(const SceneDescription& scene, std::uint64_t seed, Tally& tally);
 Failure CheckAgainstOracle(const SceneDescription& scene, std::uint64_t seed, Tally& tally);
+Failure CheckTriangles(const SceneDescription& scene, std::uint64_t seed, Tally& tally);
 Failure CheckSampling(const SceneDescription& scene, std::uint64_t seed, Tally& tally);
 Failure CheckVisibilitySkip(const SceneDescription& scene, std::uint64_t seed, Tally& tally);
 // The same scene in another form:

@@ -15,7 +15,8 @@ struct KnownLimit {
   const char* reason;
 };
 
-// All of the closed form of direct light (core/plane/exact), but for walls nearer than the touch distance.
+// All of the closed form of direct light (core/plane/exact), but for walls nearer than the touch distance. Where
+// triangles and tree disagree, the triangles have been right.
 inline constexpr KnownLimit kKnownLimits[] = {
     {"tangents", "rays", 0.6, "a circle that touches the receiver is on neither side of it"},
     {"tangents", "sampling", 0.6, "a circle that touches the receiver is on neither side of it"},
@@ -38,6 +39,11 @@ inline constexpr KnownLimit kKnownLimits[] = {
     {"sizes", "rays", 0.005, "distances that agree to 1e-11 count as equal, however small the curves are"},
     {"sizes", "similarity", 0.004, "distances that agree to 1e-11 count as equal, however small the curves are"},
     {"sizes", "reversal", 0.001, "distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"cluster", "triangles", 0.001,
+     "the tree: distances that agree to 1e-11 count as equal, however small the curves are"},
+    {"corners", "triangles", 0.001, "the tree: distances that agree to 1e-11 count as equal"},
+    {"fan", "triangles", 0.0005, "the tree: distances that agree to 1e-11 count as equal"},
+    {"slivers", "triangles", 0.0002, "the tree: crossings at angles of 1e-7 are missed"},
     {"fan", "rays", 0.003, "a receiver where two curves cross, facing along one of them"},
     {"corners", "similarity", 0.02, "walls nearer than the touch distance: which is there depends on the place"},
     {"grid", "rays", 0.002, "sines of a far and a very near end cancel"},

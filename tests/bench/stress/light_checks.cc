@@ -158,6 +158,34 @@ Failure CheckAgainstOracle(const SceneDescription& description, std::uint64_t, T
   return std::nullopt;
 }
 
+Failure CheckTriangles(const SceneDescription& description, std::uint64_t, Tally& tally) {
+  const Built built(description);
+  if (!built.scene || built.scene->traits().has_arcs) return std::nullopt;
+  if (!built.triangulation) {
+    ++tally.counts["triangles: scenes without"];
+    return std::nullopt;
+  }
+  ExactSolver tree(*built.scene, built.caster->bvh(), {});
+  ExactSolver triangles(*built.scene, built.caster->bvh(), {}, built.triangulation.get());
+  for (std::size_t i = 0; i < built.points.size(); ++i) {
+    const Receiver& receiver = *built.points[i];
+    const ExactValue a = triangles.Evaluate(receiver), b = tree.Evaluate(receiver);
+    if (!tally.Within("triangles: E", a.irradiance[0] - b.irradiance[0],
+                      a.irradiance_error[0] + b.irradiance_error[0])) {
+      return Text("point ", i, ": ", a.irradiance[0], " by triangles, ", b.irradiance[0], " by the tree");
+    }
+    if (!tally.Within("triangles: gradient", a.gradient[0] - b.gradient[0],
+                      a.gradient_error[0] + b.gradient_error[0]) ||
+        !tally.Within("triangles: Hessian", a.hessian[0] - b.hessian[0], a.hessian_error[0] + b.hessian_error[0])) {
+      return Text("point ", i, ": derivatives ", a.gradient[0], " ", a.hessian[0], " by triangles, ", b.gradient[0],
+                  " ", b.hessian[0], " by the tree");
+    }
+  }
+  tally.counts["triangles: points"] += built.points.size();
+  tally.counts["triangles: points left to the tree"] += static_cast<std::uint64_t>(triangles.undecided());
+  return std::nullopt;
+}
+
 Failure CheckSampling(const SceneDescription& description, std::uint64_t seed, Tally& tally) {
   const Built built(description);
   if (!built.scene) return std::nullopt;

@@ -20,11 +20,12 @@ Built::Built(const SceneDescription& description) {
   scene = BuildScene(description, diagnostics);
   if (scene == nullptr) return;
   caster = std::make_shared<const RayCaster>(scene);
+  triangulation = Triangulation::Of(*scene);
   points = PointsOfProbes(*scene);
 }
 
 std::vector<ExactValue> SolveExact(const Built& built, bool occlusion) {
-  ExactSolver solver(*built.scene, built.caster->bvh(), {.occlusion = occlusion});
+  ExactSolver solver(*built.scene, built.caster->bvh(), {.occlusion = occlusion}, built.triangulation.get());
   std::vector<ExactValue> values;
   values.reserve(built.points.size());
   for (const Receiver* point : built.points) values.push_back(solver.Evaluate(*point));

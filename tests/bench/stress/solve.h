@@ -10,6 +10,7 @@
 
 #include "core/plane/exact/exact.h"
 #include "core/plane/ray_caster.h"
+#include "core/plane/triangulation/triangulation.h"
 #include "core/render/field.h"
 #include "core/render/settings.h"
 #include "core/scene/description.h"
@@ -22,10 +23,11 @@ struct Built {
 
   std::shared_ptr<const Scene> scene;  // Null if the description is refused.
   std::shared_ptr<const RayCaster> caster;
-  std::vector<const Receiver*> points;  // Of all probes.
+  std::shared_ptr<const Triangulation> triangulation;  // Null where there is none.
+  std::vector<const Receiver*> points;                 // Of all probes.
 };
 
-// At every point of every probe; normalised units.
+// At every point of every probe; normalised units. With the triangulation, if there is one.
 std::vector<ExactValue> SolveExact(const Built& built, bool occlusion = true);
 
 // Through the door of all rendering, on this thread; world units. Absent if the plan is refused.
