@@ -8,6 +8,7 @@
 
 #include "core/render/probe_points.h"
 #include "core/render/skips.h"
+#include "core/render/world_units.h"
 
 namespace flatlight {
 namespace {
@@ -27,18 +28,6 @@ ExactOptions OptionsOf(const Plan& plan) {
   options.channels = plan.Takes(skip::kColour) ? 1 : kMaxChannels;
   return options;
 }
-
-// The place where results leave normalised units.
-struct WorldUnits {
-  double irradiance;
-  double gradient;
-  double hessian;
-
-  explicit WorldUnits(const Frame& frame)
-      : irradiance(frame.radiance_scale),
-        gradient(frame.radiance_scale / frame.scale),
-        hessian(frame.radiance_scale / frame.scale / frame.scale) {}
-};
 
 }  // namespace
 

@@ -6,29 +6,16 @@
 #include <utility>
 #include <vector>
 
-#include "core/math/tolerances.h"
 #include "core/plane/path_tracing/emitter_reach.h"
 #include "core/plane/path_tracing/path_tracer.h"
 #include "core/plane/ray_caster.h"
 #include "core/render/light_paths.h"
+#include "core/render/onward_points.h"
 #include "core/render/probe_points.h"
 #include "core/render/skips.h"
 
 namespace flatlight {
 namespace {
-
-// Where a receiver lies on another curve as well, what counts is what lies beyond, toward increasing arc length.
-Receiver MovedOnward(const Receiver& receiver, const RayCaster& caster) {
-  if (!caster.Touches({receiver.position, receiver.element})) return receiver;
-  Receiver moved = receiver;
-  double step = kOnwardTouches * caster.scene().touch_distance();
-  do {
-    moved.position =
-        receiver.position + step * receiver.tangent + 0.5 * receiver.curvature * step * step * receiver.normal;
-    step *= 2;
-  } while (step <= kFarthestOnward && caster.Touches({moved.position, moved.element}));
-  return moved;
-}
 
 class PathSampler final : public PointSampler {
  public:

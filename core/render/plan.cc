@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "core/plane/ray_tracing/ray_tree.h"
 #include "core/render/light_paths.h"
 #include "core/render/skips.h"
 
@@ -13,6 +14,8 @@ namespace flatlight {
 namespace {
 
 constexpr std::uint32_t kDefaultSamples = 1024;
+// Of ray tracing, whose rays branch.
+constexpr std::uint32_t kDefaultFirstRays = 256;
 // Of a pixel: a path goes through hundreds of them.
 constexpr std::uint32_t kDefaultPictureSamples = 8;
 // Paths of a block: samples come in whole ones.
@@ -49,8 +52,26 @@ void CheckRanges(const Settings& settings, Diagnostics& diagnostics) {
   }
 }
 
+void CheckDerivatives(const Settings& settings, Diagnostics& diagnostics) {
+  const bool none = settings.derivatives.value_or(Derivatives::kHessian) == Derivatives::kNone;
+  if (settings.method == Method::kPathTracing && settings.derivatives.has_value() && !none) {
+    diagnostics.Add("settings.derivatives", "path-tracing gives none: leave this out, or use exact or ray-tracing");
+  }
+  if (!settings.formulation.has_value()) return;
+  if (settings.method != Method::kRayTracing) {
+    diagnostics.Add("settings.formulation", "applies to ray-tracing alone: leave this out, or use that");
+  } else if (none) {
+    diagnostics.Add("settings.formulation", "says how derivatives are found, but derivatives none asks for none");
+  }
+}
+
 // Settings that the method would ignore, and scenes that it cannot do.
 void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
+  CheckDerivatives(settings, diagnostics);
+  if (settings.method == Method::kRayTracing && scene.traits().pixels > 0) {
+    diagnostics.Add("settings.method",
+                    "ray-tracing gives irradiance at points, and a probe of this scene is a picture: use path-tracing");
+  }
   if (settings.method == Method::kExact) {
     if (scene.traits().pixels > 0) {
       diagnostics.Add("settings.method",
@@ -75,13 +96,11 @@ void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diag
     }
     return;
   }
-  if (settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone) {
-    diagnostics.Add("settings.derivatives", "path-tracing gives none: leave this out, or use exact");
-  }
   if (scene.traits().probe_points > 0 && !DirectLightOnly(scene, settings) && HasHiddenCaustics(scene)) {
     diagnostics.Add("settings.method",
-                    "path-tracing cannot find the light that plane.lights send over mirrors and glass: set max bounces "
-                    "to 0, or give the light a surface, a small arc that emits");
+                    MethodNames()[static_cast<std::size_t>(*settings.method)] +
+                        " cannot find the light that plane.lights send over mirrors and glass: set max bounces "
+                        "to 0, or give the light a surface, a small arc that emits");
   }
   if (!settings.max_bounces.has_value() && LightNeverFades(scene)) {
     diagnostics.Add(
@@ -97,9 +116,17 @@ void FillMethodDefaults(const Scene& scene, Plan& plan) {
     if (!settings.derivatives.has_value()) settings.derivatives = Derivatives::kHessian;
     return;
   }
-  settings.derivatives = Derivatives::kNone;
   if (!settings.seed.has_value()) settings.seed = 0;
   const bool open_ended = settings.target_error.has_value() || settings.time_limit.has_value();
+  if (settings.method == Method::kRayTracing) {
+    if (!settings.derivatives.has_value()) settings.derivatives = Derivatives::kHessian;
+    if (settings.derivatives != Derivatives::kNone && !settings.formulation.has_value()) {
+      settings.formulation = Formulation::kStratified;
+    }
+    if (!settings.samples.has_value() && !open_ended) settings.samples = kDefaultFirstRays;
+    return;
+  }
+  settings.derivatives = Derivatives::kNone;
   if (scene.traits().pixels > 0) {
     plan.picture_samples = settings.samples;
     if (!settings.samples.has_value() && !open_ended) plan.picture_samples = kDefaultPictureSamples;
@@ -109,16 +136,21 @@ void FillMethodDefaults(const Scene& scene, Plan& plan) {
   }
 }
 
-// Vertices of a path if all curves reflect as the average one does, weighed by length.
-double ExpectedVertices(const Scene& scene, const Plan& plan) {
-  const double most = plan.Takes(skip::kBounces) ? 0 : plan.settings.max_bounces.value_or(1e9);
+// Over all curves, weighed by length.
+double MeanReflectance(const Scene& scene) {
   double length = 0;
   double reflected = 0;
   for (const Curve& curve : scene.curves()) {
     length += curve.length;
     reflected += curve.length * curve.reflectance.Max();
   }
-  const double reflectance = length > 0 ? reflected / length : 0;
+  return length > 0 ? reflected / length : 0;
+}
+
+// Vertices of a path if all curves reflect as the average one does.
+double ExpectedVertices(const Scene& scene, const Plan& plan) {
+  const double most = plan.Takes(skip::kBounces) ? 0 : plan.settings.max_bounces.value_or(1e9);
+  const double reflectance = MeanReflectance(scene);
   if (reflectance == 1) return std::min(most + 1, 1e6);
   return (1 - std::pow(reflectance, most + 1)) / (1 - reflectance);
 }
@@ -134,6 +166,19 @@ bool TrianglesPay(const Scene& scene, const Plan& plan) {
          2 * traits.probe_points >= traits.elements;
 }
 
+// Rays of the tree behind one of `samples` rays of the first level.
+double ExpectedTree(const Scene& scene, const Plan& plan, double samples) {
+  const double most = plan.Takes(skip::kBounces) ? 0 : plan.settings.max_bounces.value_or(64);
+  auto branches = static_cast<std::uint32_t>(samples / kBlockSamples);
+  double rays = 1, level = 1;
+  for (double depth = 0; depth < most && depth < 64; ++depth) {
+    branches = RayTree::Branches(branches);
+    level *= branches > 1 ? branches : MeanReflectance(scene);
+    rays += level;
+  }
+  return rays;
+}
+
 void AddPasses(const Scene& scene, Plan& plan) {
   PlanPass pass;
   pass.points = static_cast<double>(scene.traits().probe_points);
@@ -141,12 +186,15 @@ void AddPasses(const Scene& scene, Plan& plan) {
     pass.name = plan.triangles ? "direct light in closed form, through triangles where they can be made"
                                : "direct light in closed form";
   } else {
-    pass.name = "paths from the points";
+    const bool branching = plan.settings.method == Method::kRayTracing;
+    pass.name = branching ? "branching rays from the points" : "paths from the points";
     if (plan.settings.samples.has_value())
       pass.samples = std::ceil(*plan.settings.samples / kBlockSamples) * kBlockSamples;
     const double rays_per_vertex = plan.Takes(skip::kVisibility) ? 1 : 2;
     if (!plan.Takes(skip::kEmission)) {
-      pass.expected_rays = pass.points * pass.samples * rays_per_vertex * ExpectedVertices(scene, plan);
+      pass.expected_rays =
+          pass.points * pass.samples *
+          (branching ? ExpectedTree(scene, plan, pass.samples) : rays_per_vertex * ExpectedVertices(scene, plan));
     }
   }
   if (pass.points > 0 || scene.traits().pixels == 0) plan.passes.push_back(pass);
@@ -171,7 +219,9 @@ std::string Summary(const Scene& scene, const Plan& plan) {
     if (plan.settings.derivatives == Derivatives::kHessian) text += " with gradient and Hessian";
     text += " at ";
   } else {
-    text = points == 0 && pixels > 0 ? "Light tracing of " : "Path tracing of ";
+    text = points == 0 && pixels > 0                     ? "Light tracing of "
+           : plan.settings.method == Method::kRayTracing ? "Ray tracing of "
+                                                         : "Path tracing of ";
     if (plan.settings.max_bounces == 0u || plan.Takes(skip::kBounces)) {
       text += "direct light";
     } else if (plan.settings.max_bounces.has_value()) {
@@ -179,12 +229,17 @@ std::string Summary(const Scene& scene, const Plan& plan) {
     } else {
       text += "all bounces";
     }
+    if (plan.settings.derivatives == Derivatives::kGradient) text += " with gradient";
+    if (plan.settings.derivatives == Derivatives::kHessian) text += " with gradient and Hessian";
     text += " at ";
   }
   if (points > 0 || pixels == 0) text += std::to_string(points) + (points == 1 ? " point" : " points");
   if (pixels > 0) text += (points > 0 ? " and in " : "") + std::to_string(pixels) + " pixels";
-  if (plan.settings.method == Method::kPathTracing) {
-    if (plan.settings.samples.has_value()) text += ", at most " + Text(plan.passes[0].samples) + " paths each";
+  if (plan.settings.method != Method::kExact) {
+    const bool branching = plan.settings.method == Method::kRayTracing;
+    if (plan.settings.samples.has_value()) {
+      text += ", at most " + Text(plan.passes[0].samples) + (branching ? " branching rays each" : " paths each");
+    }
     if (plan.settings.target_error.has_value())
       text += ", until the error is " + Text(100 * *plan.settings.target_error) + " %";
     if (plan.settings.time_limit.has_value()) text += ", for " + Text(*plan.settings.time_limit) + " s";
@@ -198,7 +253,7 @@ std::string Summary(const Scene& scene, const Plan& plan) {
 }  // namespace
 
 const std::vector<std::string>& MethodNames() {
-  static const auto& names = *new std::vector<std::string>{"exact", "path-tracing"};
+  static const auto& names = *new std::vector<std::string>{"exact", "path-tracing", "ray-tracing"};
   return names;
 }
 

@@ -7,6 +7,7 @@
 #include "core/render/fluence_rendering.h"
 #include "core/render/joint_rendering.h"
 #include "core/render/path_tracing_rendering.h"
+#include "core/render/ray_tracing_rendering.h"
 #include "core/render/skips.h"
 
 namespace flatlight {
@@ -17,6 +18,9 @@ std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, co
   if (plan.settings.method == Method::kExact) {
     auto triangulation = plan.triangles ? indexes.TrianglesFor(scene) : nullptr;
     return std::make_unique<ExactRendering>(std::move(scene), std::move(caster), std::move(triangulation), plan);
+  }
+  if (plan.settings.method == Method::kRayTracing) {
+    return std::make_unique<RayTracingRendering>(std::move(scene), std::move(caster), plan);
   }
   const SceneTraits& traits = scene->traits();
   if (traits.pixels == 0) return std::make_unique<PathTracingRendering>(std::move(scene), std::move(caster), plan);

@@ -9,16 +9,20 @@
 
 namespace flatlight {
 
-enum class Method : std::uint8_t { kExact, kPathTracing };
+enum class Method : std::uint8_t { kExact, kPathTracing, kRayTracing };
 enum class Derivatives : std::uint8_t { kNone, kGradient, kHessian };
 
 // What the caller asks for; absent means the method's default. See settings.proto for units and ranges.
+// How ray tracing finds derivatives.
+enum class Formulation : std::uint8_t { kStratified, kPolyline, kArcLength };
+
 struct Settings {
   std::optional<Method> method;
   std::optional<std::uint32_t> samples;
   std::optional<std::uint32_t> max_bounces;
   std::optional<std::uint32_t> seed;
   std::optional<Derivatives> derivatives;
+  std::optional<Formulation> formulation;
   std::optional<double> target_error;
   std::optional<double> time_limit;  // s
   std::optional<std::uint32_t> threads;

@@ -74,6 +74,15 @@ void AddBounces(const Scene& scene, const Settings& settings, const LightWays& w
                 none_asked ? "max bounces 0 asks for none anyway" : "some curves reflect");
 }
 
+void AddBlackPaths(const Scene& scene, bool direct, Decisions& decisions) {
+  const std::vector<Curve>& curves = scene.curves();
+  const auto black = static_cast<std::size_t>(
+      std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return c.reflectance.IsBlack(); }));
+  decisions.Add(skip::kBlackPaths, !direct && black > 0,
+                "paths end at " + Counted(black, "black curve", "black curves"),
+                direct ? "no path goes on from where it arrives" : "no curve is black");
+}
+
 }  // namespace
 
 std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings) {
@@ -83,8 +92,9 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
                 traits.emitting_curves > 0 ? Counted(traits.emitting_curves, "curve emits", "curves emit")
                 : traits.lights > 0        ? Counted(traits.lights, "light shines", "lights shine")
                                            : "the environment shines");
-  decisions.Add(skip::kColour, traits.grey, "all spectra are grey: one channel is computed",
-                "some spectra are coloured");
+  const bool branching = settings.method == Method::kRayTracing;
+  decisions.Add(skip::kColour, traits.grey && !branching, "all spectra are grey: one channel is computed",
+                branching ? "branching rays carry all channels at once" : "some spectra are coloured");
   const bool nothing_blocks = NothingBlocks(scene);
   const std::string nothing_reason = "nothing can stand between two points: blockers are not looked for";
   if (settings.method == Method::kExact) {
@@ -98,6 +108,15 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
   }
   const bool direct = DirectLightOnly(scene, settings);
   const LightWays ways(scene, direct);
+  if (branching) {
+    const std::string reason = "branching rays find what they meet: no shadow tests, no emitters chosen";
+    decisions.Add(skip::kVisibility, false, "", reason);
+    AddBounces(scene, settings, ways, decisions);
+    AddBlackPaths(scene, direct, decisions);
+    decisions.Add(skip::kUnseenEmitters, false, "", reason);
+    decisions.Add(skip::kConvergedPoints, false, "", "a point that has met the target error is done");
+    return decisions.Take();
+  }
   if (traits.probe_points == 0 && traits.pixels > 0) {
     const std::string reason = "light is followed from where it shines: no point looks for it";
     decisions.Add(skip::kVisibility, false, "", reason);
@@ -113,12 +132,7 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
   decisions.Add(skip::kVisibility, nothing_blocks || ways.clear > 0, nothing_blocks ? nothing_reason : clear_reason,
                 "curves may block each other");
   AddBounces(scene, settings, ways, decisions);
-  const std::vector<Curve>& curves = scene.curves();
-  const auto black = static_cast<std::size_t>(
-      std::count_if(curves.begin(), curves.end(), [](const Curve& c) { return c.reflectance.IsBlack(); }));
-  decisions.Add(skip::kBlackPaths, !direct && black > 0,
-                "paths end at " + Counted(black, "black curve", "black curves"),
-                direct ? "no path goes on from where it arrives" : "no curve is black");
+  AddBlackPaths(scene, direct, decisions);
   decisions.Add(skip::kUnseenEmitters, ways.unseen > 0,
                 Counted(ways.unseen, "emitting piece lights ", "emitting pieces light ") +
                     (direct ? "no point" : "no point and nothing that reflects"),

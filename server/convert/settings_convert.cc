@@ -12,8 +12,22 @@ v1::Settings::Method ToProto(Method method) {
       return v1::Settings::EXACT;
     case Method::kPathTracing:
       return v1::Settings::PATH_TRACING;
+    case Method::kRayTracing:
+      return v1::Settings::RAY_TRACING;
   }
   return v1::Settings::METHOD_UNSPECIFIED;
+}
+
+v1::Settings::Formulation ToProto(Formulation formulation) {
+  switch (formulation) {
+    case Formulation::kStratified:
+      return v1::Settings::STRATIFIED;
+    case Formulation::kPolyline:
+      return v1::Settings::POLYLINE;
+    case Formulation::kArcLength:
+      return v1::Settings::ARC_LENGTH;
+  }
+  return v1::Settings::FORMULATION_UNSPECIFIED;
 }
 
 v1::Settings::Derivatives ToProto(Derivatives derivatives) {
@@ -47,6 +61,10 @@ Settings SettingsFromProto(const v1::Settings& proto, Diagnostics& diagnostics) 
   Settings settings;
   if (proto.method() == v1::Settings::EXACT) settings.method = Method::kExact;
   if (proto.method() == v1::Settings::PATH_TRACING) settings.method = Method::kPathTracing;
+  if (proto.method() == v1::Settings::RAY_TRACING) settings.method = Method::kRayTracing;
+  if (proto.formulation() == v1::Settings::STRATIFIED) settings.formulation = Formulation::kStratified;
+  if (proto.formulation() == v1::Settings::POLYLINE) settings.formulation = Formulation::kPolyline;
+  if (proto.formulation() == v1::Settings::ARC_LENGTH) settings.formulation = Formulation::kArcLength;
   if (proto.has_samples()) settings.samples = proto.samples();
   if (proto.has_max_bounces()) settings.max_bounces = proto.max_bounces();
   if (proto.has_seed()) settings.seed = proto.seed();
@@ -67,6 +85,7 @@ v1::Settings SettingsToProto(const Settings& settings) {
   if (settings.max_bounces) proto.set_max_bounces(*settings.max_bounces);
   if (settings.seed) proto.set_seed(*settings.seed);
   if (settings.derivatives) proto.set_derivatives(ToProto(*settings.derivatives));
+  if (settings.formulation) proto.set_formulation(ToProto(*settings.formulation));
   if (settings.target_error) proto.set_target_error(*settings.target_error);
   if (settings.time_limit) proto.set_time_limit(*settings.time_limit);
   if (settings.threads) proto.set_threads(*settings.threads);

@@ -60,6 +60,12 @@ void AddDerivatives(CLI::App& app, SettingsOptions& settings) {
       ->type_name("NAME");
 }
 
+void AddFormulation(CLI::App& app, SettingsOptions& settings) {
+  app.add_option("--formulation", settings.formulation,
+                 "of ray-tracing's derivatives: stratified (default), polyline or arc-length")
+      ->type_name("NAME");
+}
+
 void AddThreadsAndSkips(CLI::App& app, SettingsOptions& settings) {
   app.add_option("--threads", settings.threads, "at most so many (default: all the server's)")->type_name("N");
   app.add_option("--no-skip", settings.no_skip, "do work that could be left out, see explain; may be repeated")
@@ -69,11 +75,13 @@ void AddThreadsAndSkips(CLI::App& app, SettingsOptions& settings) {
 
 void AddSettings(CLI::App& app, Raw& raw) {
   SettingsOptions& settings = raw.settings;
-  app.add_option("--method", settings.method, "exact (direct light) or path-tracing")->type_name("NAME");
-  app.add_option("--samples", settings.samples, "paths a point (default 1024)")->type_name("N");
+  app.add_option("--method", settings.method, "exact (direct light), path-tracing or ray-tracing")->type_name("NAME");
+  app.add_option("--samples", settings.samples, "paths a point (default 1024; first rays of ray-tracing: 256)")
+      ->type_name("N");
   AddBounces(app, settings);
   app.add_option("--seed", settings.seed, "another seed, an independent result (default 0)")->type_name("N");
   AddDerivatives(app, settings);
+  AddFormulation(app, settings);
   app.add_option("--target-error", settings.target_error, "stop at this relative standard error, in (0, 1]")
       ->type_name("E");
   app.add_option("--time-limit", settings.time_limit, "stop after so many seconds")->type_name("S");
@@ -177,6 +185,7 @@ void AddBench(CLI::App& app, Raw& raw) {
   AddBounces(bench, settings);
   bench.add_option("--seed", settings.seed, "other seeds (default 0)")->type_name("N");
   AddDerivatives(bench, settings);
+  AddFormulation(bench, settings);
   AddThreadsAndSkips(bench, settings);
   AddJson(bench, raw, "the report");
   AddQuiet(bench, raw);

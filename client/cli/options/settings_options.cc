@@ -98,6 +98,7 @@ absl::StatusOr<v1::Settings> ParseSettings(const SettingsOptions& options) {
       SetCount("--max-bounces", options.max_bounces, 0, settings, &Settings::set_max_bounces),
       SetCount("--seed", options.seed, 0, settings, &Settings::set_seed),
       SetChoice("--derivatives", options.derivatives, settings, &Settings::set_derivatives),
+      SetChoice("--formulation", options.formulation, settings, &Settings::set_formulation),
       SetNumber("--target-error", options.target_error, 1, settings, &Settings::set_target_error),
       SetNumber("--time-limit", options.time_limit, kAny, settings, &Settings::set_time_limit),
       SetCount("--threads", options.threads, 1, settings, &Settings::set_threads)};

@@ -15,7 +15,8 @@ namespace flatlight {
 
 // As written on the command line.
 struct SettingsOptions {
-  std::optional<std::string> method, samples, max_bounces, seed, derivatives, target_error, time_limit, threads;
+  std::optional<std::string> method, samples, max_bounces, seed, derivatives, formulation, target_error, time_limit,
+      threads;
   std::vector<std::string> no_skip;
 };
 

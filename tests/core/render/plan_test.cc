@@ -67,6 +67,31 @@ TEST(PlanTest, FillsInDefaults) {
   EXPECT_FALSE(PlanFor(*Reflecting(), limit).settings.samples.has_value());
 }
 
+TEST(PlanTest, RayTracingGivesDerivatives) {
+  Settings settings;
+  settings.method = Method::kRayTracing;
+  const Plan plan = PlanFor(*Reflecting(), settings);
+  EXPECT_EQ(plan.settings.samples, 256u);
+  EXPECT_EQ(plan.settings.derivatives, Derivatives::kHessian);
+  EXPECT_EQ(plan.settings.formulation, Formulation::kStratified);
+  EXPECT_GT(plan.passes[0].expected_rays, 256 * plan.passes[0].points);
+  EXPECT_THAT(plan.summary, testing::StartsWith("Ray tracing of all bounces with gradient and Hessian at "));
+  settings.derivatives = Derivatives::kNone;
+  EXPECT_FALSE(PlanFor(*Reflecting(), settings).settings.formulation.has_value());
+}
+
+TEST(PlanTest, AFormulationThatWouldBeIgnoredIsAMistake) {
+  Settings settings;
+  settings.formulation = Formulation::kPolyline;
+  settings.method = Method::kPathTracing;
+  EXPECT_THAT(Mistakes(*Reflecting(), settings),
+              ElementsAre(HasSubstr("settings.formulation: applies to ray-tracing alone")));
+  settings.method = Method::kRayTracing;
+  EXPECT_THAT(Mistakes(*Reflecting(), settings), testing::IsEmpty());
+  settings.derivatives = Derivatives::kNone;
+  EXPECT_THAT(Mistakes(*Reflecting(), settings), ElementsAre(HasSubstr("derivatives none asks for none")));
+}
+
 TEST(PlanTest, ReportsEveryMistakeWithItsPlace) {
   Settings settings;
   settings.method = Method::kPathTracing;

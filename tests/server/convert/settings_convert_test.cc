@@ -23,6 +23,7 @@ v1::Settings EverySetting() {
   proto.set_max_bounces(0);
   proto.set_seed(7);
   proto.set_derivatives(v1::Settings::GRADIENT);
+  proto.set_formulation(v1::Settings::POLYLINE);
   proto.set_target_error(0.01);
   proto.set_time_limit(2.5);
   proto.set_threads(3);
@@ -40,6 +41,7 @@ TEST(SettingsConvertTest, EverySettingComesBack) {
   EXPECT_EQ(settings.max_bounces, 0U);
   EXPECT_EQ(settings.seed, 7U);
   EXPECT_EQ(settings.derivatives, Derivatives::kGradient);
+  EXPECT_EQ(settings.formulation, Formulation::kPolyline);
   EXPECT_EQ(settings.target_error, 0.01);
   EXPECT_EQ(settings.time_limit, 2.5);
   EXPECT_EQ(settings.threads, 3U);
@@ -65,7 +67,7 @@ TEST(SettingsConvertTest, WhatIsAbsentStaysAbsent) {
 }
 
 TEST(SettingsConvertTest, EveryMethodAndEveryOrderOfDerivativesComesBack) {
-  for (const auto method : {v1::Settings::EXACT, v1::Settings::PATH_TRACING}) {
+  for (const auto method : {v1::Settings::EXACT, v1::Settings::PATH_TRACING, v1::Settings::RAY_TRACING}) {
     for (const auto derivatives : {v1::Settings::NONE, v1::Settings::GRADIENT, v1::Settings::HESSIAN}) {
       v1::Settings proto;
       proto.set_method(method);
@@ -74,6 +76,15 @@ TEST(SettingsConvertTest, EveryMethodAndEveryOrderOfDerivativesComesBack) {
       EXPECT_TRUE(MessageDifferencer::Equals(SettingsToProto(SettingsFromProto(proto, diagnostics)), proto));
       EXPECT_TRUE(diagnostics.empty());
     }
+  }
+}
+
+TEST(SettingsConvertTest, EveryFormulationComesBack) {
+  for (const auto formulation : {v1::Settings::STRATIFIED, v1::Settings::POLYLINE, v1::Settings::ARC_LENGTH}) {
+    v1::Settings proto;
+    proto.set_formulation(formulation);
+    Diagnostics diagnostics;
+    EXPECT_TRUE(MessageDifferencer::Equals(SettingsToProto(SettingsFromProto(proto, diagnostics)), proto));
   }
 }
 

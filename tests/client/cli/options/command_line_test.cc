@@ -116,6 +116,7 @@ TEST(CommandLine, AllOfRender) {
   EXPECT_EQ(settings.max_bounces(), 0U);
   EXPECT_EQ(settings.seed(), 7U);
   EXPECT_EQ(settings.derivatives(), v1::Settings::NONE);
+  EXPECT_EQ(Parse({"render", "a", "--formulation", "arc-length"})->settings.formulation(), v1::Settings::ARC_LENGTH);
   EXPECT_EQ(settings.target_error(), 0.01);
   EXPECT_EQ(settings.time_limit(), 1000);
   EXPECT_EQ(settings.threads(), 2U);
@@ -174,7 +175,8 @@ TEST(CommandLine, MistakesAreNamed) {
   EXPECT_THAT(ErrorOf({"compare", "a"}), HasSubstr("RESULTS"));
   EXPECT_THAT(ErrorOf({"jobs", "--server", ""}), HasSubstr("--server"));
   EXPECT_EQ(ErrorOf({"compare", "a", "b", "--tolerance", "-1"}), "--tolerance: '-1'; must be a number from 0");
-  EXPECT_EQ(ErrorOf({"render", "a", "--method", "magic"}), "--method: 'magic'; must be one of exact, path-tracing");
+  EXPECT_EQ(ErrorOf({"render", "a", "--method", "magic"}),
+            "--method: 'magic'; must be one of exact, path-tracing, ray-tracing");
   EXPECT_EQ(ErrorOf({"render", "a", "--samples", "0", "--threads", "x"}),
             "--samples: '0'; must be a whole number from 1 to 4294967295\n"
             "--threads: 'x'; must be a whole number from 1 to 4294967295");

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_PLANE_RAY_TRACING_END_FINDER_H_
+#define FLATLIGHT_CORE_PLANE_RAY_TRACING_END_FINDER_H_
+
+#include <optional>
+
+#include "core/plane/ray_tracing/break_law.h"
+#include "core/plane/ray_tracing/hemicircle_gather.h"
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+// Looks from a receiver for the end of the piece that a ray meets, on the way to a neighbouring ray.
+class EndFinder {
+ public:
+  // Both must outlive this.
+  EndFinder(const Scene& scene, const Receiver& receiver) : scene_(scene), receiver_(receiver) {}
+
+  // Where the nearer of two neighbours' surfaces ends between them; absent if it does not.
+  std::optional<Break> Between(const GatheredRay& a, const GatheredRay& b) const;
+
+ private:
+  std::optional<Break> At(Vector2 to, double turn, const GatheredRay& near, const GatheredRay& far) const;
+  std::optional<Break> Silhouette(const Element& piece, const GatheredRay& near, const GatheredRay& far) const;
+  // Whether some piece of the curve on the circle of `piece` has the point.
+  bool OnArc(const Curve& curve, const Element& piece, Point2 point) const;
+
+  const Scene& scene_;
+  const Receiver& receiver_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_PLANE_RAY_TRACING_END_FINDER_H_

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/plane/ray_tracing/hemicircle_gather.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/plane/ray_tracing/end_finder.h"
+#include "core/sampling/hash.h"
+
+namespace flatlight {
+namespace {
+
+// Children of a gather's key, beyond any number of rays.
+constexpr std::uint64_t kShift = std::uint64_t{1} << 40;
+constexpr std::uint64_t kRays = kShift + 1;
+constexpr std::uint64_t kPast = std::uint64_t{1} << 42;
+
+// In the direction of ray.sine.
+void Cast(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
+          const Cancellation& cancellation, GatheredRay& ray, double& cast) {
+  ray.cosine = CosineOf(ray.sine);
+  const Vector2 direction = ray.sine * receiver.tangent + ray.cosine * receiver.normal;
+  ++cast;
+  if (const std::optional<Hit> hit = tree.caster().ClosestHit({receiver.position, receiver.element}, direction)) {
+    ray.radiance = tree.Radiance(*hit, direction, rays, key, cancellation, cast);
+    ray.element = hit->element;
+    ray.to = hit->distance * direction;
+    ray.normal = Dot(hit->normal, direction) < 0 ? hit->normal : -hit->normal;
+  } else {
+    ray.radiance = tree.caster().scene().environment();
+  }
+}
+
+}  // namespace
+
+void GatherHemicircle(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
+                      const Cancellation& cancellation, std::vector<GatheredRay>& gathered, double& cast) {
+  gathered.clear();
+  const double shift = ToUnitInterval(ChildKey(key, kShift));
+  for (std::uint32_t k = 0; k <= rays; ++k) {
+    GatheredRay ray;
+    if (k > 0) ray.begin = std::min(1.0, 2 * ((k - 1 + shift) / rays) - 1);
+    if (k < rays) ray.end = std::min(1.0, 2 * ((k + shift) / rays) - 1);
+    if (!(ray.begin < ray.end)) continue;
+    ray.sine = std::clamp(ray.begin + ToUnitInterval(ChildKey(key, k)) * (ray.end - ray.begin), ray.begin, ray.end);
+    Cast(tree, receiver, rays, ChildKey(key, kRays + k), cancellation, ray, cast);
+    gathered.push_back(ray);
+    if (cancellation.cancelled()) return;
+  }
+}
+
+void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
+                  const Cancellation& cancellation, std::vector<GatheredRay>& gathered, double& cast) {
+  constexpr int kMostLooks = 8;  // Between two rays.
+  const EndFinder ends(tree.caster().scene(), receiver);
+  // The horizon is a neighbour too: something may end just above it.
+  GatheredRay left, right;
+  left.sine = left.begin = left.end = -1, right.sine = right.begin = right.end = 1;
+  gathered.insert(gathered.begin(), left);
+  gathered.push_back(right);
+  std::vector<GatheredRay> all;
+  all.reserve(2 * gathered.size());
+  std::vector<GatheredRay> later;  // Those found on the way from the ray after to the ray before, the last one first.
+  for (std::size_t k = 0; k < gathered.size(); ++k) {
+    all.push_back(gathered[k]);
+    if (k + 1 == gathered.size()) break;
+    GatheredRay after = gathered[k + 1];
+    later.clear();
+    for (int look = 0; look < kMostLooks; ++look) {
+      const std::optional<Break> end = ends.Between(all.back(), after);
+      if (!end) break;
+      const bool forward = all.back().InverseDistance() >= after.InverseDistance();
+      GatheredRay past;
+      past.begin = past.end = gathered[k].end;
+      // As far beyond the end as coordinates are sure of.
+      const double step = 4 * tree.caster().scene().touch_distance() * std::max(end->inverse_distance, 1.0);
+      past.sine = end->sine + (forward ? step : -step);
+      if (!(past.sine > all.back().sine && past.sine < after.sine)) break;
+      Cast(tree, receiver, rays, ChildKey(key, kPast + (std::uint64_t{k} << 8) + static_cast<std::uint64_t>(look)),
+           cancellation, past, cast);
+      if (forward) {
+        past.break_before = end;
+        all.push_back(past);
+      } else {
+        after.break_before = end;
+        later.push_back(after);
+        after = past;
+      }
+      if (all.back().element == after.element) break;
+    }
+    if (!later.empty()) {
+      all.push_back(after);
+      while (later.size() > 1) all.push_back(later.back()), later.pop_back();
+      gathered[k + 1].break_before = later.front().break_before;
+    }
+  }
+  gathered.assign(all.begin() + 1, all.end() - 1);
+}
+
+Spectrum IrradianceOf(const std::vector<GatheredRay>& gathered) {
+  Spectrum sum;
+  for (const GatheredRay& ray : gathered) sum = sum + (ray.end - ray.begin) * ray.radiance;
+  return sum;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/ray_tracing_rendering.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/render/onward_points.h"
+#include "core/render/probe_points.h"
+#include "core/render/skips.h"
+#include "core/render/world_units.h"
+#include "core/sampling/hash.h"
+
+namespace flatlight {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+// With fewer, derivatives miss too much for the misses to be told from noise.
+constexpr std::uint32_t kFirstRays = 16;
+constexpr double kRoundSeconds = 4e-3;  // Of a thread, between two looks at the clock.
+constexpr std::size_t kMostTasks = 1 << 14;
+constexpr double kDarkest = 0.01;  // Errors count in this share of the probe's mean at least (DESIGN 3).
+
+int OrdersOf(const Plan& plan) { return 1 + static_cast<int>(plan.settings.derivatives.value_or(Derivatives::kNone)); }
+
+std::uint32_t RaysOfReplicate(std::uint32_t samples) {
+  return std::max(kFirstRays,
+                  (samples + static_cast<std::uint32_t>(kReplicates) - 1) / static_cast<std::uint32_t>(kReplicates));
+}
+
+double BrightestOf(const Scene& scene) {
+  double brightest = scene.environment().Max();
+  for (const Curve& curve : scene.curves()) brightest = std::max(brightest, curve.radiance.Max());
+  return brightest;
+}
+
+GatherDerivatives DerivativesBy(Formulation formulation, const Receiver& receiver,
+                                const std::vector<GatheredRay>& gathered) {
+  switch (formulation) {
+    case Formulation::kArcLength:
+      return ArcLengthDerivatives(receiver, gathered);
+    case Formulation::kPolyline:
+      return PolylineDerivatives(receiver, gathered);
+    default:
+      return StratifiedDerivatives(receiver, gathered);
+  }
+}
+
+}  // namespace
+
+RayTracingRendering::RayTracingRendering(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
+                                         const Plan& plan)
+    : scene_(std::move(scene)),
+      settings_(plan.settings),
+      orders_(OrdersOf(plan)),
+      max_threads_(plan.MaxThreads()),
+      brightest_(BrightestOf(*scene_)) {
+  std::size_t probe = 0;
+  for (const std::size_t end : EndsOfProbes(*scene_)) {
+    while (probe_of_point_.size() < end) probe_of_point_.push_back(probe);
+    ++probe;
+  }
+  estimates_.resize(probe_of_point_.size());
+  decisions_.resize(probe_of_point_.size(), Decision::kOpen);
+  if (settings_.samples.has_value()) last_rays_ = RaysOfReplicate(*settings_.samples);
+  if (plan.Takes(skip::kEmission)) {
+    for (Estimate& estimate : estimates_) estimate.rays = last_rays_;
+    end_reason_ = EndReason::kSamplesDone;
+    return;
+  }
+  RayTreeOptions options;
+  options.max_bounces = settings_.max_bounces;
+  if (plan.Takes(skip::kBounces)) options.max_bounces = 0;
+  options.end_black_paths = plan.Takes(skip::kBlackPaths);
+  ExactOptions exact;
+  exact.derivatives = orders_ - 1;
+  for (const Receiver* point : PointsOfProbes(*scene_)) points_.push_back(MovedOnward(*point, *caster));
+  tree_.emplace(std::move(caster), options);
+  if (scene_->traits().lights > 0) lights_.emplace(tree_->caster(), exact);
+  BeginPass(last_rays_ > 0 ? std::min(kFirstRays, last_rays_) : kFirstRays);
+}
+
+void RayTracingRendering::BeginPass(std::uint32_t rays) {
+  pass_rays_ = rays;
+  pass_.clear();
+  next_task_ = 0;
+  for (std::size_t point = 0; point < points_.size(); ++point)
+    if (decisions_[point] != Decision::kFinal) pass_.push_back(point);
+}
+
+RayTracingRendering::Gathered RayTracingRendering::Gather(std::size_t point, std::size_t replicate,
+                                                          const Cancellation& cancellation) const {
+  std::vector<GatheredRay> gathered;
+  gathered.reserve(pass_rays_ + std::size_t{1});
+  const Receiver& receiver = points_[point];
+  std::uint64_t key = ChildKey(0, settings_.seed.value_or(0));
+  for (const std::uint64_t part : {std::uint64_t{point}, std::uint64_t{replicate}, std::uint64_t{pass_rays_}}) {
+    key = ChildKey(key, part);
+  }
+  Gathered result;
+  GatherHemicircle(*tree_, receiver, pass_rays_, key, cancellation, gathered, result.cast);
+  if (cancellation.cancelled()) return result;
+  result.whole = true;
+  result.value[0] = IrradianceOf(gathered);
+  if (orders_ > 1) {
+    const Formulation formulation = settings_.formulation.value_or(Formulation::kStratified);
+    if (formulation != Formulation::kArcLength) {
+      LookPastEnds(*tree_, receiver, pass_rays_, key, cancellation, gathered, result.cast);
+      result.whole = !cancellation.cancelled();
+    }
+    for (const GatheredRay& ray : gathered) result.steepest = std::max(result.steepest, ray.InverseDistance());
+    const GatherDerivatives derivatives = DerivativesBy(formulation, receiver, gathered);
+    result.value[1] = derivatives.first;
+    result.value[2] = derivatives.second;
+  }
+  return result;
+}
+
+void RayTracingRendering::Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
+                                  Clock::Duration budget) {
+  const Clock::Time begin = clock.Now();
+  if (!start_) start_ = begin;
+  const double seconds_before = seconds_;
+  const int threads = std::max(std::min(max_threads_, executor.threads()), 1);
+  while (!done() && !cancellation.cancelled()) {
+    const Clock::Time before = clock.Now();
+    const double seconds = std::min(kRoundSeconds * threads, std::max(Seconds(budget - (before - begin)).count(), 0.0));
+    const std::size_t left = pass_.size() * kReplicates - next_task_;
+    const auto wanted = static_cast<std::size_t>(std::min(tasks_per_second_ * seconds, double{kMostTasks}));
+    const std::size_t tasks = std::min(std::max(wanted, static_cast<std::size_t>(threads)), left);
+    // Some replicates of the first point may be there already.
+    const std::size_t have = next_task_ % kReplicates;
+    unfinished_.resize(have + tasks);
+    executor.ParallelFor(tasks, threads, [&](std::size_t i) {
+      const std::size_t task = next_task_ + i;
+      unfinished_[have + i] = Gather(pass_[task / kReplicates], task % kReplicates, cancellation);
+    });
+    std::size_t whole = have;
+    while (whole < unfinished_.size() && unfinished_[whole].whole) rays_ += unfinished_[whole++].cast;
+    const std::size_t first = next_task_ / kReplicates, points = whole / kReplicates;
+    for (std::size_t i = 0; i < points; ++i) FinishPoint(pass_[first + i], &unfinished_[i * kReplicates]);
+    next_task_ += whole - have;
+    work_done_ += static_cast<double>(whole - have) * pass_rays_;
+    unfinished_.resize(whole);
+    unfinished_.erase(unfinished_.begin(), unfinished_.begin() + static_cast<std::ptrdiff_t>(points * kReplicates));
+    const Clock::Time after = clock.Now();
+    const double spent = Seconds(after - before).count();
+    tasks_per_second_ = spent > 0 ? static_cast<double>(tasks) / spent : double{kMostTasks};
+    seconds_ = seconds_before + Seconds(after - begin).count();
+    if (next_task_ == pass_.size() * kReplicates) {
+      PlanPass(after);
+    } else if (settings_.time_limit && Seconds(after - *start_).count() >= *settings_.time_limit) {
+      end_reason_ = EndReason::kTimeLimit;
+    }
+    if (after - begin >= budget) return;
+  }
+}
+
+void RayTracingRendering::FinishPoint(std::size_t point, const Gathered* gathered) {
+  Estimate& estimate = estimates_[point];
+  estimate = {};
+  estimate.rays = pass_rays_;
+  double steepest = 0;
+  for (std::size_t r = 0; r < kReplicates; ++r) steepest = std::max(steepest, gathered[r].steepest);
+  // What one ray more on the brightest thing changes, there where the nearest is.
+  const double step = brightest_ * 2.0 / pass_rays_;
+  const std::array<double, kOrders> steps = {step, 2 * step * steepest, 6 * step * steepest * steepest};
+  std::array<double, kReplicates> values;
+  for (std::size_t order = 0; order < static_cast<std::size_t>(orders_); ++order) {
+    for (int c = 0; c < kMaxChannels; ++c) {
+      for (std::size_t r = 0; r < kReplicates; ++r) values[r] = gathered[r].value[order][c];
+      const MeanEstimate mean = EstimateMean(values, steps[order]);
+      estimate.value[order][c] = mean.mean;
+      estimate.error[order][c] = mean.StandardError();
+    }
+  }
+  if (!lights_) return;
+  ExactValue direct;
+  lights_->Add(points_[point], direct);
+  const std::array<const Spectrum*, kOrders> light = {&direct.irradiance, &direct.gradient, &direct.hessian};
+  for (std::size_t order = 0; order < static_cast<std::size_t>(orders_); ++order) {
+    estimate.value[order] = estimate.value[order] + *light[order];
+  }
+}
+
+std::vector<Spectrum> RayTracingRendering::MeansOverProbes() const {
+  std::vector<Spectrum> means(scene_->probes().size());
+  for (std::size_t point = 0; point < estimates_.size(); ++point) {
+    const std::size_t probe = probe_of_point_[point];
+    const double share = 1 / static_cast<double>(scene_->probes()[probe].receivers.size());
+    means[probe] = means[probe] + share * estimates_[point].value[0];
+  }
+  return means;
+}
+
+double RayTracingRendering::RelativeErrorAt(std::size_t point, const std::vector<Spectrum>& means) const {
+  double worst = 0;
+  const Estimate& estimate = estimates_[point];
+  for (int c = 0; c < kMaxChannels; ++c) {
+    const double floor = kDarkest * means[probe_of_point_[point]][c];
+    worst = std::max(worst, RelativeError(estimate.value[0][c], estimate.error[0][c], floor));
+  }
+  return worst;
+}
+
+// After each pass.
+void RayTracingRendering::PlanPass(Clock::Time now) {
+  const std::vector<Spectrum> means = MeansOverProbes();
+  worst_error_ = 0;
+  bool all_final = true;
+  for (std::size_t point = 0; point < points_.size(); ++point) {
+    const double error = RelativeErrorAt(point, means);
+    worst_error_ = std::max(*worst_error_, error);
+    if (!settings_.target_error || decisions_[point] == Decision::kFinal) continue;
+    const bool met = error <= *settings_.target_error;
+    decisions_[point] = !met                                   ? Decision::kOpen
+                        : decisions_[point] == Decision::kOpen ? Decision::kLast
+                                                               : Decision::kFinal;
+    all_final = all_final && decisions_[point] == Decision::kFinal;
+  }
+  constexpr std::uint32_t kMostRays = 1u << 30;
+  if (settings_.target_error && all_final) {
+    end_reason_ = EndReason::kTargetReached;
+  } else if ((last_rays_ > 0 && pass_rays_ >= last_rays_) || pass_rays_ >= kMostRays) {
+    end_reason_ = EndReason::kSamplesDone;
+  } else if (settings_.time_limit && Seconds(now - *start_).count() >= *settings_.time_limit) {
+    end_reason_ = EndReason::kTimeLimit;
+  } else {
+    // Where the end is known, few passes waste little on the way to it.
+    const bool open_ended = settings_.target_error.has_value() || settings_.time_limit.has_value();
+    const std::uint32_t next = pass_rays_ * (open_ended ? 2 : 4);
+    BeginPass(last_rays_ > 0 && next * 2 > last_rays_ ? last_rays_ : next);
+  }
+}
+
+RenderProgress RayTracingRendering::Progress() const {
+  RenderProgress progress;
+  progress.rays = rays_;
+  for (const Estimate& estimate : estimates_) {
+    progress.samples = std::max(progress.samples, static_cast<double>(kReplicates) * estimate.rays);
+  }
+  progress.relative_error = worst_error_;
+  if (done()) {
+    progress.fraction = 1;
+    return progress;
+  }
+  if (last_rays_ > 0) {
+    double all = 0;
+    for (std::uint32_t rays = std::min(kFirstRays, last_rays_); rays < last_rays_ / 2 + 1; rays *= 4) all += rays;
+    all = (all + last_rays_) * static_cast<double>(points_.size() * kReplicates);
+    progress.fraction = std::min(work_done_ / all, 0.999);
+  }
+  if (settings_.time_limit) {
+    progress.fraction = std::max(progress.fraction, std::min(seconds_ / *settings_.time_limit, 1.0));
+  }
+  if (progress.fraction > 0) progress.remaining_seconds = seconds_ * (1 - progress.fraction) / progress.fraction;
+  return progress;
+}
+
+std::shared_ptr<const Field> RayTracingRendering::Snapshot() const {
+  auto field = std::make_shared<Field>();
+  field->rays = rays_;
+  const WorldUnits units(scene_->frame());
+  std::size_t point = 0;
+  for (const Probe& probe : scene_->probes()) {
+    ProbeField& values = field->probes.emplace_back();
+    const std::array<std::vector<double>*, kOrders> value = {&values.irradiance, &values.gradient, &values.hessian};
+    const std::array<std::vector<double>*, kOrders> error = {&values.standard_error, &values.gradient_error,
+                                                             &values.hessian_error};
+    const std::array<double, kOrders> unit = {units.irradiance, units.gradient, units.hessian};
+    for (std::size_t i = 0; i < probe.receivers.size(); ++i, ++point) {
+      const Estimate& estimate = estimates_[point];
+      values.samples.push_back(static_cast<double>(kReplicates) * estimate.rays);
+      for (std::size_t order = 0; order < static_cast<std::size_t>(orders_); ++order) {
+        for (int c = 0; c < scene_->channels(); ++c) {
+          value[order]->push_back(unit[order] * estimate.value[order][c]);
+          error[order]->push_back(unit[order] * estimate.error[order][c]);
+        }
+      }
+    }
+  }
+  return field;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/ray_tracing_rendering.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "core/render/skips.h"
+#include "tests/support/transport/honest_errors.h"
+#include "tests/support/transport/render.h"
+#include "tests/support/transport/scene_maker.h"
+
+namespace flatlight {
+namespace {
+
+constexpr double kFullTurn = 2 * std::numbers::pi;
+
+Settings Branching(std::uint32_t samples, std::uint32_t seed = 0) {
+  Settings settings;
+  settings.method = Method::kRayTracing;
+  settings.samples = samples;
+  settings.seed = seed;
+  return settings;
+}
+
+// Light is the same everywhere: derivatives are 0 but for noise.
+TEST(RayTracingTest, StatedErrorsTellTheTruthInAFurnace) {
+  const auto scene = SquareRoom({.reflectance = {0.6}, .radiance = {1}}, 2).Build();
+  for (const Formulation formulation : {Formulation::kStratified, Formulation::kPolyline, Formulation::kArcLength}) {
+    HonestErrors irradiance, gradient, hessian, wrong;
+    for (std::uint32_t seed = 0; seed < 40; ++seed) {
+      Settings settings = Branching(128, seed);
+      settings.formulation = formulation;
+      const Ended ended = Render(scene, settings);
+      for (const ProbeField& probe : ended.field->probes) {
+        for (std::size_t i = 0; i < probe.irradiance.size(); ++i) {
+          irradiance.Add(probe.irradiance[i], 5, probe.standard_error[i]);
+          wrong.Add(1.05 * probe.irradiance[i], 5, probe.standard_error[i]);
+          gradient.Add(probe.gradient[i], 0, probe.gradient_error[i]);
+          hessian.Add(probe.hessian[i], 0, probe.hessian_error[i]);
+        }
+      }
+    }
+    EXPECT_EQ(irradiance.count(), 320u);
+    EXPECT_TRUE(irradiance.Unbiased()) << irradiance.MeanZ();
+    EXPECT_TRUE(irradiance.RightSize()) << irradiance.MeanSquareZ();
+    EXPECT_FALSE(wrong.Unbiased()) << "a twentieth more light must be noticed";
+    EXPECT_TRUE(gradient.Unbiased()) << gradient.MeanZ();
+    EXPECT_LT(gradient.MeanSquareZ(), 1.6);
+    EXPECT_TRUE(hessian.Unbiased()) << hessian.MeanZ();
+    EXPECT_LT(hessian.MeanSquareZ(), 1.6);
+  }
+}
+
+TEST(RayTracingTest, AgreesWithPathTracingAmongAllMaterialsAndLights) {
+  SceneMaker maker;
+  maker.Polyline("room", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, true, {.reflectance = {0.5, 0.6, 0.7}})
+      .Probe("room", 24);
+  maker.Arc("lamp", {{-0.5, 0.5}, 0.25, 0, -kFullTurn}, {.radiance = {4, 3, 2}});
+  maker.Arc("ball", {{0.3, 0.3}, 0.2, 0, -kFullTurn}, {.material = DielectricDescription{1.5}});
+  maker.Segment("gloss", {0.95, 0.9}, {0.95, -0.9}, {.material = PhongDescription{{0.8}, 20}});
+  maker.Segment("metal", {0.9, -0.95}, {-0.9, -0.95}, {.material = ConductorDescription{{0.9}, 0.4}});
+  maker.Segment("mirror", {-0.95, -0.3}, {-0.95, 0.3}, {.material = MirrorDescription{{0.9}}});
+  const auto scene = maker.Build();
+  const ProbeField paths = Render(scene, Sampled(16384)).field->probes[0];
+  const ProbeField trees = Render(scene, Branching(2048)).field->probes[0];
+  double sum = 0;
+  for (std::size_t i = 0; i < paths.irradiance.size(); ++i) {
+    const double z =
+        (trees.irradiance[i] - paths.irradiance[i]) / std::hypot(trees.standard_error[i], paths.standard_error[i]);
+    EXPECT_LT(std::abs(z), 6) << i;
+    sum += z * z / static_cast<double>(paths.irradiance.size());
+  }
+  EXPECT_LT(sum, 1.6);
+}
+
+// Two lights without a surface, a sky and a bounce: what path tracing finds, and its differences.
+TEST(RayTracingTest, GradientIsThatOfTheIrradiance) {
+  constexpr double kStep = 0.05;
+  SceneMaker maker;
+  maker.Segment("floor", {0, 0}, {2, 0}, {.reflectance = {0.6}})
+      .Segment("wall", {0, 1.5}, {0, 0}, {.reflectance = {0.8}});
+  maker.Segment("lamp", {1.6, 1}, {0.8, 1.2}, {.radiance = {2}});
+  maker.Light(PointLightDescription{{1, 0.8}, {2}}).Environment({0.3});
+  SceneMaker points = maker;
+  for (const double x : {0.5 - 2 * kStep, 0.5 - kStep, 0.5 + kStep, 0.5 + 2 * kStep}) points.PointProbe({x, 0}, {0, 1});
+  const auto traced = Render(points.Build(), Sampled(1u << 17)).field;
+  const auto value = [&](std::size_t i) { return traced->probes[i].irradiance[0]; };
+  double variance = 0;
+  for (const ProbeField& probe : traced->probes) variance += probe.standard_error[0] * probe.standard_error[0];
+  const double difference = (8 * (value(2) - value(1)) - (value(3) - value(0))) / (12 * kStep);
+  const auto scene = maker.PointProbe({0.5, 0}, {0, 1}).Build();
+  for (const Formulation formulation : {Formulation::kStratified, Formulation::kPolyline}) {
+    Settings settings = Branching(1u << 14);
+    settings.formulation = formulation;
+    const ProbeField field = Render(scene, settings).field->probes[0];
+    EXPECT_NEAR(field.gradient[0], difference,
+                5 * std::hypot(field.gradient_error[0], 8 * std::sqrt(variance / 2) / (12 * kStep)) + 2e-3);
+    EXPECT_LT(field.gradient_error[0], 0.02);
+    EXPECT_GT(std::abs(difference), 0.3);
+  }
+}
+
+TEST(RayTracingTest, SameBitsForAnyThreadsSlicesAndSkips) {
+  const auto scene = FurnishedRoom(false, 3).Build();
+  Settings settings = Branching(256);
+  const std::uint64_t one = HashOf(*Render(scene, settings).field);
+  EXPECT_EQ(HashOf(*Render(scene, settings, 2).field), one);
+  EXPECT_EQ(HashOf(*Render(scene, settings, 7, std::chrono::microseconds(50)).field), one);
+  EXPECT_NE(HashOf(*Render(scene, Branching(256, 1)).field), one);
+  for (const std::string& name : SkipNames()) {
+    settings.no_skip = {name};
+    EXPECT_EQ(HashOf(*Render(scene, settings).field), one) << name;
+  }
+}
+
+TEST(RayTracingTest, StopsAtItsTarget) {
+  const auto scene = SquareRoom({.reflectance = {0.6}, .radiance = {1}}, 2).Build();
+  Settings settings;
+  settings.method = Method::kRayTracing;
+  settings.target_error = 0.01;
+  const Ended ended = Render(scene, settings);
+  EXPECT_EQ(ended.reason, EndReason::kTargetReached);
+  for (const ProbeField& probe : ended.field->probes) {
+    for (std::size_t i = 0; i < probe.irradiance.size(); ++i) {
+      EXPECT_LE(probe.standard_error[i], 0.01 * probe.irradiance[i]);
+      EXPECT_NEAR(probe.irradiance[i], 5, 6 * probe.standard_error[i]);
+    }
+  }
+}
+
+// Gathers are stratified: with four times the rays the error of direct light falls to a quarter or less.
+TEST(RayTracingTest, ErrorOfDirectLightFallsAsOneOverRays) {
+  SceneMaker maker = UnitLight();
+  maker.Segment("blocker", {0.5, 0.5}, {1.2, 0.5}).Probe("floor", 64);
+  const auto scene = maker.Build();
+  Settings exact;
+  exact.method = Method::kExact;
+  const std::vector<double> truth = Render(scene, exact).field->probes[0].irradiance;
+  std::vector<double> errors;
+  for (const std::uint32_t samples : {256u, 4096u}) {
+    const std::vector<double> found = Render(scene, Branching(samples)).field->probes[0].irradiance;
+    double sum = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) sum += (found[i] - truth[i]) * (found[i] - truth[i]);
+    errors.push_back(std::sqrt(sum));
+  }
+  EXPECT_LT(errors[1], errors[0] / 11) << "16 times the rays";
+}
+
+TEST(RayTracingTest, Darkness) {
+  const auto scene = SquareRoom({.reflectance = {0.6}}, 1).Build();
+  const Ended ended = Render(scene, Branching(256));
+  EXPECT_EQ(ended.field->rays, 0);
+  EXPECT_EQ(ended.field->probes[0].irradiance, std::vector<double>{0});
+  EXPECT_EQ(ended.field->probes[0].hessian, std::vector<double>{0});
+  EXPECT_EQ(ended.field->probes[0].samples, std::vector<double>{256});
+}
+
+}  // namespace
+}  // namespace flatlight
