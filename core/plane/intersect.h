@@ -21,14 +21,16 @@ struct Crossings {
 struct Line {
   Point2 origin;
   Vector2 direction;
-  double length_squared;
+  double length;
+  double inverse_length_squared;
   double slack;  // The distance `touch`, in units of Cross(direction, .).
 
   Line(Point2 from, Vector2 along, double touch)
       : origin(from),
         direction(along),
-        length_squared(LengthSquared(along)),
-        slack(touch * std::sqrt(length_squared)) {}
+        length(Length(along)),
+        inverse_length_squared(1 / LengthSquared(along)),
+        slack(touch * length) {}
 };
 
 // Whether a line meets the segment from a to b, and if so where: t of any sign. Ends count as part of it, to the
@@ -39,8 +41,8 @@ inline bool MeetsSegment(const Line& line, Point2 segment_a, Point2 segment_b, d
   // On which side of the line each end lies: the same arithmetic for every element that shares the end.
   const double side_a = Cross(line.direction, a);
   const double side_b = Cross(line.direction, b);
-  const double to_a = Dot(a, line.direction) / line.length_squared;
-  const double to_b = Dot(b, line.direction) / line.length_squared;
+  const double to_a = Dot(a, line.direction) * line.inverse_length_squared;
+  const double to_b = Dot(b, line.direction) * line.inverse_length_squared;
   const Vector2 along = segment_b - segment_a;
   const double denominator = Cross(line.direction, along);
   const double near = std::min(to_a, to_b);

@@ -3,13 +3,17 @@
 #ifndef FLATLIGHT_CORE_PLANE_RAY_CASTER_H_
 #define FLATLIGHT_CORE_PLANE_RAY_CASTER_H_
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
-#include <utility>
+#include <vector>
 
 #include "core/math/vec.h"
 #include "core/plane/bvh.h"
+#include "core/plane/curve_grid.h"
 #include "core/plane/ray_walk.h"
 #include "core/scene/scene.h"
 
@@ -37,8 +41,10 @@ struct Hit {
 class RayCaster {
  public:
   explicit RayCaster(std::shared_ptr<const Scene> scene);
-  // With a tree that was made for the scene.
-  RayCaster(std::shared_ptr<const Scene> scene, Bvh bvh) : scene_(std::move(scene)), bvh_(std::move(bvh)) {}
+
+  // The caster of a scene that differs little from this one's: only what changed is done again. Null if so much changed
+  // that a new one is better.
+  std::shared_ptr<const RayCaster> Refit(std::shared_ptr<const Scene> after) const;
 
   // The first curve hit by from.position + t direction, t > 0. Ties break by (distance, element). Closed at shared end
   // points: a ray through a point where two curves meet, to the accuracy of the coordinates, hits one of them.
@@ -57,14 +63,21 @@ class RayCaster {
   bool Touches(const SurfacePoint& point) const;
 
   const Scene& scene() const { return *scene_; }
-  const Bvh& bvh() const { return bvh_; }
+  // Built when it is first asked for. Safe to use from several threads.
+  const Bvh& bvh() const;
 
  private:
+  RayCaster(std::shared_ptr<const Scene> scene, CurveGrid grid);
+
   RayEnd EndAt(const SurfacePoint& point) const;
   Hit HitAt(const WalkRay& ray, const NearestCrossing& nearest) const;
 
   std::shared_ptr<const Scene> scene_;
-  Bvh bvh_;
+  CurveGrid grid_;
+  std::vector<std::uint32_t> carriers_;  // Of the elements, close together.
+  mutable std::mutex bvh_mutex_;
+  mutable std::atomic<bool> has_bvh_ = false;
+  mutable std::optional<Bvh> bvh_;
   const RaySearches* searches_ = &ChosenRaySearches();
 };
 

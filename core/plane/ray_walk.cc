@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/plane/ray_walk.h"
 
+#include "core/math/tolerances.h"
 #include "core/plane/intersect.h"
 #include "core/scene/element_frame.h"
 
@@ -8,7 +9,8 @@
 #define HWY_TARGET_INCLUDE "core/plane/ray_walk.cc"
 #include <hwy/foreach_target.h>
 
-#include "core/plane/bvh_walk-inl.h"
+#include "core/plane/block_lanes-inl.h"
+#include "core/plane/grid_walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace flatlight {
@@ -17,10 +19,10 @@ namespace HWY_NAMESPACE {
 // What a search needs besides its ray.
 struct World {
   const Scene& scene;
-  const Bvh& bvh;
+  const CurveGrid& grid;
 
-  bool IsSegment(const Bvh::Slot& slot, bool straight) const {
-    return straight || scene.elements()[slot.element].kind == Element::Kind::kSegment;
+  const Element& ElementIn(const CurveBlock& block, std::uint32_t lane) const {
+    return scene.elements()[block.element(lane)];
   }
 };
 
@@ -37,27 +39,64 @@ struct NearestSearch {
 
   const double& end() const { return result.t; }
 
-  // Meets the element of a slot; false, as a later one may be nearer.
-  HWY_INLINE bool Meet(const World& world, std::uint32_t index, bool straight) {
-    const Bvh::Slot& slot = world.bvh.slots()[index];
-    const bool own = slot.carrier == ray.from.carrier;
-    if (world.IsSegment(slot, straight)) {
-      double t = 0;
-      const bool met = MeetsSegment(line, slot.a, slot.b, t);
-      Keep(met & !own, {t, slot.element, index, true});
-      return false;
+  // Meets the elements of a cell; false, as a later one may be nearer.
+  HWY_INLINE bool Meet(const World& world, const GridCell& cell) {
+    const CurveBlock* const blocks = world.grid.blocks().data();
+    const Doubles d;
+    const Ids ids;
+    const auto infinity = hn::Set(d, std::numeric_limits<double>::infinity());
+    for (std::uint32_t lane = 0; lane < CurveBlock::kWidth; lane += kBlockLanes) {
+      auto nearest = infinity;
+      auto where = hn::Zero(ids);  // The block.
+      for (std::uint32_t index = cell.first; index < cell.first + cell.count; ++index) {
+        const CurveBlock& block = blocks[index];
+        const LaneMeeting meeting = MeetLanes(line, block, lane);
+        auto met = hn::And(meeting.met, hn::And(hn::Gt(meeting.t, hn::Zero(d)), hn::Lt(meeting.t, nearest)));
+        met = hn::AndNot(OfCarrier(block, lane, ray.from.carrier), met);
+        if (cell.kind == GridCell::kCurves) met = hn::AndNot(IsArc(block, lane), met);
+        nearest = hn::IfThenElse(met, meeting.t, nearest);
+        where = hn::IfThenElse(hn::RebindMask(ids, met), hn::Set(ids, index), where);
+      }
+      const double t = hn::GetLane(hn::MinOfLanes(d, nearest));
+      if (t <= result.t && t < std::numeric_limits<double>::infinity()) {
+        HWY_ALIGN std::uint64_t index[kBlockLanes];
+        hn::Store(where, ids, index);
+        std::uint32_t bits = BlockBits(hn::Eq(nearest, hn::Set(d, t)));
+        do {
+          const std::uint32_t at = FirstLane(bits), block = static_cast<std::uint32_t>(index[at]);
+          Keep({t, blocks[block].element(lane + at), block, lane + at});
+          bits &= bits - 1;
+        } while (HWY_UNLIKELY(bits != 0));
+      }
     }
-    const Element& arc = world.scene.elements()[slot.element];
-    const double touch = world.scene.touch_distance();
-    const Crossings crossings = own ? CrossOwnCircle(arc, line.origin, line.direction, touch)
-                                    : CrossArc(arc, line.origin, line.direction, touch);
-    for (int i = 0; i < crossings.count; ++i) Keep(true, {crossings.t[i], slot.element, index, false});
+    if (cell.kind == GridCell::kCurves) {
+      for (std::uint32_t index = cell.first; index < cell.first + cell.count; ++index) {
+        const CurveBlock& block = blocks[index];
+        for (std::uint32_t bits = ArcsNear(line, block); bits != 0; bits &= bits - 1)
+          MeetElement(world, block.element(FirstLane(bits)));
+      }
+    }
     return false;
   }
 
-  HWY_INLINE void Keep(bool met, const NearestCrossing& found) {
-    const bool first = (found.t < result.t) | ((found.t == result.t) & (found.element < result.element));
-    if (met & (found.t > 0) & first) result = found;
+  bool MeetElement(const World& world, std::uint32_t index) {
+    const Element& element = world.scene.elements()[index];
+    const double touch = world.scene.touch_distance();
+    const bool own = element.carrier == ray.from.carrier;
+    Crossings crossings;
+    if (element.kind == Element::Kind::kSegment) {
+      if (!own) crossings = CrossSegment(element, line.origin, line.direction, touch);
+    } else {
+      crossings = own ? CrossOwnCircle(element, line.origin, line.direction, touch)
+                      : CrossArc(element, line.origin, line.direction, touch);
+    }
+    for (int i = 0; i < crossings.count; ++i)
+      if (crossings.t[i] > 0 && crossings.t[i] < std::numeric_limits<double>::infinity()) Keep({crossings.t[i], index});
+    return false;
+  }
+
+  HWY_INLINE void Keep(const NearestCrossing& found) {
+    if (found.t < result.t || (found.t == result.t && found.element < result.element)) result = found;
   }
 };
 
@@ -83,126 +122,142 @@ struct BlockerSearch {
 
   const double& end() const { return length; }
 
-  // Meets the element of a slot; true if it blocks.
-  HWY_INLINE bool Meet(const World& world, std::uint32_t index, bool straight) {
-    const Bvh::Slot& slot = world.bvh.slots()[index];
-    const bool own = slot.carrier == ray.from.carrier, theirs = slot.carrier == to.carrier;
-    if (world.IsSegment(slot, straight)) {
-      double t = 0;
-      const bool met = MeetsSegment(line, slot.a, slot.b, t);
-      result = met & !own & !theirs & (t > 0) & (t < 1);
-      return result;
+  // Meets the elements of a cell; true if one blocks.
+  HWY_INLINE bool Meet(const World& world, const GridCell& cell) {
+    const CurveBlock* const blocks = world.grid.blocks().data();
+    const Doubles d;
+    auto blocking = hn::Lt(hn::Zero(d), hn::Zero(d));
+    for (std::uint32_t index = cell.first; index < cell.first + cell.count; ++index) {
+      const CurveBlock& block = blocks[index];
+      for (std::uint32_t lane = 0; lane < CurveBlock::kWidth; lane += kBlockLanes) {
+        const LaneMeeting meeting = MeetLanes(line, block, lane);
+        auto met = hn::And(meeting.met, hn::And(hn::Gt(meeting.t, hn::Zero(d)), hn::Lt(meeting.t, hn::Set(d, 1))));
+        met = hn::AndNot(OfCarrier(block, lane, ray.from.carrier), met);
+        met = hn::AndNot(OfCarrier(block, lane, to.carrier), met);
+        if (cell.kind == GridCell::kCurves) met = hn::AndNot(IsArc(block, lane), met);
+        blocking = hn::Or(blocking, met);
+      }
     }
-    // Both ends on one circle: nothing of it lies between. One end on it: only its other crossing counts.
-    if (own && theirs) return false;
-    const Element& arc = world.scene.elements()[slot.element];
+    result = !hn::AllFalse(d, blocking);
+    if (result || cell.kind == GridCell::kSegments) return result;
+    for (std::uint32_t index = cell.first; index < cell.first + cell.count; ++index) {
+      const CurveBlock& block = blocks[index];
+      for (std::uint32_t bits = ArcsNear(line, block); bits != 0; bits &= bits - 1)
+        if (MeetElement(world, block.element(FirstLane(bits)))) return true;
+    }
+    return false;
+  }
+
+  bool MeetElement(const World& world, std::uint32_t index) {
+    const Element& element = world.scene.elements()[index];
+    const bool own = element.carrier == ray.from.carrier, theirs = element.carrier == to.carrier;
     const double touch = world.scene.touch_distance();
     Crossings crossings;
-    if (theirs) {
-      crossings = CrossOwnCircle(arc, to.position, -line.direction, touch);
+    if (element.kind == Element::Kind::kSegment) {
+      if (!own && !theirs) crossings = CrossSegment(element, line.origin, line.direction, touch);
+    } else if (own && theirs) {
+      // Both ends on one circle: nothing of it lies between.
+    } else if (theirs) {
+      // One end on it: only its other crossing counts.
+      crossings = CrossOwnCircle(element, to.position, -line.direction, touch);
       if (crossings.count > 0) crossings.t[0] = 1 - crossings.t[0];
     } else {
-      crossings = own ? CrossOwnCircle(arc, line.origin, line.direction, touch)
-                      : CrossArc(arc, line.origin, line.direction, touch);
+      crossings = own ? CrossOwnCircle(element, line.origin, line.direction, touch)
+                      : CrossArc(element, line.origin, line.direction, touch);
     }
     for (int i = 0; i < crossings.count; ++i) result |= crossings.t[i] > 0 && crossings.t[i] < 1;
     return result;
   }
 };
 
-template <typename Search>
-HWY_INLINE void Run(const World& world, Search& search) {
-  Walk walk;
-  PutOff put_off;
-  const double touch = world.scene.touch_distance();
-  if (!walk.Begin(world.bvh, search.line.origin, search.line.direction, touch, search.end(), put_off)) return;
-  const auto meet = [&](std::uint32_t slot, bool straight) HWY_ATTR { return search.Meet(world, slot, straight); };
-  while (walk.Step(world.bvh, search.end(), put_off, meet)) {
-  }
-}
+// Whether an element passes through a place.
+struct TouchSearch {
+  RayEnd place;
+  Line line;
+  bool result = false;
+  double length = 0;
 
-// Several walks take turns, a node each, so that one works while another waits for memory. Input(i) gives what the
-// i-th search is made of.
-template <typename Search, typename Input>
-HWY_INLINE void RunMany(const World& world, std::size_t size, const Input& input, typename Search::Result* results) {
-  struct Runner {
-    std::size_t index;
-    Search search;
-    Walk walk;
-    PutOff put_off;
-  };
-  constexpr std::size_t kTurns = 4;
-  Runner runners[kTurns];
-  Runner* running[kTurns];
-  std::size_t count = 0, next = 0;
-  const auto start = [&](Runner& runner) HWY_ATTR {
-    while (next < size) {
-      runner.index = next++;
-      runner.search = Search(world, input(runner.index));
-      const Line& line = runner.search.line;
-      if (runner.walk.Begin(world.bvh, line.origin, line.direction, world.scene.touch_distance(), runner.search.end(),
-                            runner.put_off)) {
-        return true;
-      }
-      results[runner.index] = runner.search.result;
+  TouchSearch(const World& world, const RayEnd& at)
+      : place(at), line(at.position, {1, 1}, world.scene.touch_distance()) {}
+
+  const double& end() const { return length; }
+
+  HWY_INLINE bool Meet(const World& world, const GridCell& cell) {
+    const CurveBlock* const blocks = world.grid.blocks().data();
+    for (std::uint32_t index = cell.first; index < cell.first + cell.count; ++index) {
+      const CurveBlock& block = blocks[index];
+      for (std::uint32_t bits = LanesAround(place.position, 2 * world.scene.touch_distance(), block); bits != 0;
+           bits &= bits - 1)
+        if (MeetElement(world, block.element(FirstLane(bits)))) return true;
     }
     return false;
-  };
-  for (Runner& runner : runners)
-    if (start(runner)) running[count++] = &runner;
-  while (count > 0) {
-    for (std::size_t turn = 0; turn < count; ++turn) {
-      Runner& runner = *running[turn];
-      const auto meet = [&](std::uint32_t slot, bool straight)
-                            HWY_ATTR { return runner.search.Meet(world, slot, straight); };
-      if (runner.walk.Step(world.bvh, runner.search.end(), runner.put_off, meet)) continue;
-      results[runner.index] = runner.search.result;
-      if (!start(runner)) running[turn--] = running[--count];
-    }
   }
+
+  bool MeetElement(const World& world, std::uint32_t index) {
+    const Element& element = world.scene.elements()[index];
+    return result =
+               element.carrier != place.carrier && DistanceTo(element, place.position) <= world.scene.touch_distance();
+  }
+};
+
+// A ray without a direction meets nothing.
+HWY_INLINE bool HasDirection(Vector2 direction) {
+  const double size = std::max(std::abs(direction.x), std::abs(direction.y));
+  return size > 0 && size < std::numeric_limits<double>::infinity();
 }
 
-NearestCrossing Nearest(const Scene& scene, const Bvh& bvh, const WalkRay& ray) {
-  const World world{scene, bvh};
+// Where the places of a ray round by more than the cells' margin allows, everything is looked at.
+template <typename Search>
+void MeetAll(const World& world, Search& search) {
+  for (std::uint32_t index = 0; index < world.scene.elements().size(); ++index)
+    if (search.MeetElement(world, index)) return;
+}
+
+template <typename Search>
+HWY_INLINE void Run(const World& world, Search& search) {
+  const CurveGrid& grid = world.grid;
+  if (grid.frames().empty() || !HasDirection(search.line.direction)) return;
+  const GridCell& first = grid.cells()[grid.frames()[0].CellAt(0, 0)];
+  if (grid.frames()[0].columns * grid.frames()[0].rows == 1 && first.kind <= GridCell::kCurves) {
+    search.Meet(world, first);
+    return;
+  }
+  const Point2 origin = search.line.origin;
+  const double farthest = std::max({1.0, std::abs(origin.x), std::abs(origin.y)});
+  if (HWY_UNLIKELY(64 * kUnitRoundoff * farthest > grid.least_margin())) return MeetAll(world, search);
+  GridWalk walk(search.line);
+  walk.Run(grid, search.end(), [&](const GridCell& cell) HWY_ATTR { return search.Meet(world, cell); });
+}
+
+NearestCrossing Nearest(const Scene& scene, const CurveGrid& grid, const WalkRay& ray) {
+  const World world{scene, grid};
   NearestSearch search(world, ray);
   Run(world, search);
   return search.result;
 }
 
-void NearestOfMany(const Scene& scene, const Bvh& bvh, std::span<const WalkRay> rays,
+void NearestOfMany(const Scene& scene, const CurveGrid& grid, std::span<const WalkRay> rays,
                    std::span<NearestCrossing> nearest) {
-  RunMany<NearestSearch>(
-      {scene, bvh}, rays.size(), [&](std::size_t i) { return rays[i]; }, nearest.data());
+  for (std::size_t i = 0; i < rays.size(); ++i) nearest[i] = Nearest(scene, grid, rays[i]);
 }
 
-bool Blocker(const Scene& scene, const Bvh& bvh, const RayEnd& from, const RayEnd& to) {
-  const World world{scene, bvh};
+bool Blocker(const Scene& scene, const CurveGrid& grid, const RayEnd& from, const RayEnd& to) {
+  const World world{scene, grid};
   BlockerSearch search(world, {from, to});
   Run(world, search);
   return search.result;
 }
 
-void BlockerOfMany(const Scene& scene, const Bvh& bvh, std::span<const RayEnd> from, std::span<const RayEnd> to,
+void BlockerOfMany(const Scene& scene, const CurveGrid& grid, std::span<const RayEnd> from, std::span<const RayEnd> to,
                    std::span<bool> blocked) {
-  const auto places = [&](std::size_t i) { return PlacePair{from[i], to[i]}; };
-  RunMany<BlockerSearch>({scene, bvh}, from.size(), places, blocked.data());
+  for (std::size_t i = 0; i < from.size(); ++i) blocked[i] = Blocker(scene, grid, from[i], to[i]);
 }
 
-bool Touching(const Scene& scene, const Bvh& bvh, const RayEnd& place) {
-  const double touch = scene.touch_distance(), end = 0;
-  Walk walk;
-  PutOff put_off;
-  // The ray of length 0 visits what may be at the place.
-  if (!walk.Begin(bvh, place.position, {1, 1}, touch, end, put_off)) return false;
-  bool touches = false;
-  const auto meet = [&](std::uint32_t index, bool) HWY_ATTR {
-    const Bvh::Slot& slot = bvh.slots()[index];
-    touches = slot.carrier != place.carrier && DistanceTo(scene.elements()[slot.element], place.position) <= touch;
-    return touches;
-  };
-  while (walk.Step(bvh, end, put_off, meet)) {
-  }
-  return touches;
+bool Touching(const Scene& scene, const CurveGrid& grid, const RayEnd& place) {
+  const World world{scene, grid};
+  TouchSearch search(world, place);
+  Run(world, search);
+  return search.result;
 }
 
 const RaySearches* Searches() {

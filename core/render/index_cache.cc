@@ -2,8 +2,6 @@
 #include "core/render/index_cache.h"
 
 #include <algorithm>
-#include <optional>
-#include <utility>
 
 namespace flatlight {
 
@@ -11,10 +9,7 @@ std::shared_ptr<const RayCaster> IndexCache::For(const std::shared_ptr<const Sce
   if (auto caster = Find(*scene)) return caster;
   // Without the lock: others need not wait. Two threads may do the same work; either's result is right.
   std::shared_ptr<const RayCaster> caster;
-  if (const auto similar = FindSimilar(*scene)) {
-    if (std::optional<Bvh> bvh = similar->bvh().Refit(similar->scene(), *scene))
-      caster = std::make_shared<const RayCaster>(scene, std::move(*bvh));
-  }
+  if (const auto similar = FindSimilar(*scene)) caster = similar->Refit(scene);
   if (!caster) caster = std::make_shared<const RayCaster>(scene);
   Keep({caster, nullptr, std::nullopt});
   return caster;
