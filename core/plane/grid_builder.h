@@ -2,7 +2,6 @@
 #ifndef FLATLIGHT_CORE_PLANE_GRID_BUILDER_H_
 #define FLATLIGHT_CORE_PLANE_GRID_BUILDER_H_
 
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -32,7 +31,9 @@ class GridBuilder {
   struct Member {
     std::uint32_t cell;
     std::uint32_t element;
-    friend auto operator<=>(const Member&, const Member&) = default;
+    friend bool operator<(const Member& l, const Member& r) {
+      return l.cell != r.cell ? l.cell < r.cell : l.element < r.element;
+    }
   };
 
   void BuildGrid(std::uint32_t index, GridFrame frame, Elements elements, std::size_t level);

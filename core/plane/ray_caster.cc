@@ -17,7 +17,7 @@ constexpr std::size_t kBatch = 64;
 
 }  // namespace
 
-RayCaster::RayCaster(std::shared_ptr<const Scene> scene) : RayCaster(scene, CurveGrid(*scene)) {}
+RayCaster::RayCaster(const std::shared_ptr<const Scene>& scene) : RayCaster(scene, CurveGrid(*scene)) {}
 
 RayCaster::RayCaster(std::shared_ptr<const Scene> scene, CurveGrid grid)
     : scene_(std::move(scene)), grid_(std::move(grid)) {
@@ -25,7 +25,7 @@ RayCaster::RayCaster(std::shared_ptr<const Scene> scene, CurveGrid grid)
   for (const Element& element : scene_->elements()) carriers_.push_back(element.carrier);
 }
 
-std::shared_ptr<const RayCaster> RayCaster::Refit(std::shared_ptr<const Scene> after) const {
+std::shared_ptr<const RayCaster> RayCaster::Refit(const std::shared_ptr<const Scene>& after) const {
   std::optional<CurveGrid> grid = grid_.Refit(*scene_, *after);
   if (!grid) return nullptr;
   // Not make_shared, which does not know the constructor.

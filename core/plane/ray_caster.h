@@ -40,11 +40,11 @@ struct Hit {
 
 class RayCaster {
  public:
-  explicit RayCaster(std::shared_ptr<const Scene> scene);
+  explicit RayCaster(const std::shared_ptr<const Scene>& scene);
 
   // The caster of a scene that differs little from this one's: only what changed is done again. Null if so much changed
   // that a new one is better.
-  std::shared_ptr<const RayCaster> Refit(std::shared_ptr<const Scene> after) const;
+  std::shared_ptr<const RayCaster> Refit(const std::shared_ptr<const Scene>& after) const;
 
   // The first curve hit by from.position + t direction, t > 0. Ties break by (distance, element). Closed at shared end
   // points: a ray through a point where two curves meet, to the accuracy of the coordinates, hits one of them.

@@ -19,6 +19,7 @@ CommandResult RunCommand(const CommandLine& line, Interruption& interruption) {
       {"explain", Explain},
       {"validate", Validate},
       {"compare", CompareResults},
+      {"figure", Figure},
       {"bench", BenchMethods},
       {"bench compare", CompareBenchmarks}};
   return kCommands.at(line.command)(line, interruption);

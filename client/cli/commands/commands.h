@@ -3,6 +3,9 @@
 #ifndef FLATLIGHT_CLIENT_CLI_COMMANDS_COMMANDS_H_
 #define FLATLIGHT_CLIENT_CLI_COMMANDS_COMMANDS_H_
 
+#include <string>
+#include <vector>
+
 #include "absl/status/statusor.h"
 #include "client/cli/connection/interruption.h"
 #include "client/cli/options/command_line.h"
@@ -32,6 +35,10 @@ CommandResult Validate(const CommandLine& line, Interruption& interruption);
 
 // compare_command.cc
 CommandResult CompareResults(const CommandLine& line, Interruption& interruption);
+
+// figure_command.cc
+CommandResult Figure(const CommandLine& line, Interruption& interruption);
+std::vector<std::string> FigureNames();
 
 // bench_command.cc
 CommandResult BenchMethods(const CommandLine& line, Interruption& interruption);

@@ -30,6 +30,11 @@ Console ConsoleFor(const std::vector<Output>& outputs, bool quiet) {
 absl::Status DeliverResult(const v1::RenderResult& result, const std::vector<Output>& outputs, Console& console,
                            const Interruption& interruption) {
   console.Say(ResultText(result));
+  return WriteResult(result, outputs, console, interruption);
+}
+
+absl::Status WriteResult(const v1::RenderResult& result, const std::vector<Output>& outputs, Console& console,
+                         const Interruption& interruption) {
   const auto interrupted = [&interruption] { return interruption.Requested(); };
   if (absl::Status written = WriteOutputs(result, outputs, interrupted); !written.ok()) return written;
   console.Say(WrittenText(outputs));

@@ -19,7 +19,11 @@ absl::StatusOr<std::vector<Output>> OutputsOf(const std::vector<std::string>& pa
 // The console for a command that writes these.
 Console ConsoleFor(const std::vector<Output>& outputs, bool quiet);
 
-// Writes all outputs, unless interrupted, and says what the result is like and what was written.
+// Writes all outputs, unless interrupted, and says what was written.
+absl::Status WriteResult(const v1::RenderResult& result, const std::vector<Output>& outputs, Console& console,
+                         const Interruption& interruption);
+
+// The same, and before it says what the result is like.
 absl::Status DeliverResult(const v1::RenderResult& result, const std::vector<Output>& outputs, Console& console,
                            const Interruption& interruption);
 

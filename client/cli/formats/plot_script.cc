@@ -27,16 +27,18 @@ constexpr int kFoot = 58;             // Height of the axis at the bottom.
 constexpr std::size_t kMarkers = 48;  // Up to this many points are marked.
 
 std::string Subtitle(const v1::RenderResult& result) {
-  std::string text = OptionName(result.plan().settings().method());
-  if (result.plan().settings().method() == v1::Settings::METHOD_UNSPECIFIED)
-    text = OptionName(result.settings().method());
+  v1::Settings::Method method = result.plan().settings().method();
+  if (method == v1::Settings::METHOD_UNSPECIFIED) method = result.settings().method();
+  // Of several methods together none is named.
+  std::string text = method == v1::Settings::METHOD_UNSPECIFIED ? "" : OptionName(method) + ", ";
   double samples = 0;
   for (const v1::ProbeResult& probe : result.probes())
     for (const double n : probe.samples()) samples = std::max(samples, n);
-  if (samples > 0) text += ", " + FormatExactly(samples) + " paths a point";
+  const bool paths = method == v1::Settings::PATH_TRACING;
+  if (samples > 0) text += FormatExactly(samples) + (paths ? " paths a point, " : " rays a point, ");
   if (result.statistics().error_bound() > 0)
-    text += ", error below " + FormatValue(result.statistics().error_bound(), 2) + " W/m";
-  return text;
+    text += "error below " + FormatValue(result.statistics().error_bound(), 2) + " W/m, ";
+  return text.substr(0, text.size() - std::min<std::size_t>(text.size(), 2));
 }
 
 struct Panel {

@@ -149,6 +149,18 @@ void AddCompare(CLI::App& app, Raw& raw) {
   AddQuiet(compare, raw);
 }
 
+void AddFigure(CLI::App& app, Raw& raw) {
+  CLI::App& figure =
+      AddCommand(app, "figure", "repeat an experiment of the papers: key numbers, CSV, plot", kFigureHelp);
+  figure.add_option("NAME", raw.line.figure, "derivatives, derivatives-occluded or convergence")->required();
+  figure.add_option("--samples", raw.settings.samples, "first rays a point (default 256)")->type_name("N");
+  figure.add_option("--seed", raw.settings.seed, "another seed (default 0)")->type_name("N");
+  AddOutputs(figure, raw);
+  AddJson(figure, raw, "the figure's data");
+  AddQuiet(figure, raw);
+  AddServer(figure, raw);
+}
+
 void AddBenchCompare(CLI::App& bench, Raw& raw) {
   CLI::App& compare =
       AddCommand(bench, "compare", "one benchmark against another, with the noise of both", kBenchCompareHelp);
@@ -235,6 +247,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv, 
   AddSceneCommands(app, raw);
   AddJobCommands(app, raw);
   AddCompare(app, raw);
+  AddFigure(app, raw);
   AddBench(app, raw);
   try {
     app.parse(argc, argv);

@@ -20,8 +20,9 @@ struct CommandLine {
   std::string server;   // Of --server; empty if not given.
   bool json = false;
   bool quiet = false;
-  std::string scene;  // SCENE as written; of `scenes`, the name of one, or empty.
-  std::string job;    // JOB as written.
+  std::string scene;   // SCENE as written; of `scenes`, the name of one, or empty.
+  std::string job;     // JOB as written.
+  std::string figure;  // Of `figure`: its name.
   v1::Settings settings;
   std::vector<v1::Probe> probes;  // Of --picture: in place of the scene's own.
   std::vector<std::string> outputs;

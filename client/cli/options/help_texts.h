@@ -11,12 +11,13 @@ inline constexpr char kMainHelp[] = R"(Examples:
   flatlight explain scene.json --method path-tracing        what would be done, and why
   flatlight submit scene.json --server farm:7000            leave the work to a server
   flatlight compare mine.json reference.json                are they equal within their errors?
+  flatlight figure derivatives-occluded -o figure.svg       an experiment of the papers, repeated
   flatlight bench gallery:penumbra -o bench.svg             run time against error of every method
 
 Environment:
   FLATLIGHT_SERVER  the server, if there is no --server: HOST:PORT or unix:PATH
   FLATLIGHT_TOKEN   the token that the server asks for (the connection is not encrypted: use a tunnel between machines)
-Without a server, render, scenes, explain, validate and bench start one of their own for as long as they run.
+Without a server, render, scenes, explain, validate, figure and bench start one of their own for as long as they run.
 
 Exit status:
   0 done   1 the job failed   2 bad usage or bad scene   3 server not reached   4 denied or over quota
@@ -59,6 +60,15 @@ inline constexpr char kScenesHelp[] = R"(Examples:
   flatlight scenes penumbra > mine.json    a copy to change)";
 
 inline constexpr char kExplainHelp[] = R"(Renders nothing. Names in the list of skips are for --no-skip.)";
+
+inline constexpr char kFigureHelp[] = R"(Figures:
+  derivatives           gradient and Hessian below a light, exact and in all formulations; nothing blocks
+  derivatives-occluded  the same behind a plate, where arc-length fails (Jarosz et al. 2012)
+  convergence           error of every method against run time, with fitted slopes; -o as in `flatlight bench`
+
+Examples:
+  flatlight figure derivatives-occluded -o figure.svg -o figure.csv
+  flatlight figure convergence -o convergence.svg)";
 
 inline constexpr char kCompareHelp[] =
     R"(A and B are results in JSON form with the same probes at the same points; B is the reference. Printed for irradiance and, if

@@ -16,17 +16,17 @@ import subprocess
 import sys
 import tempfile
 import unittest
-import zlib
 
 sys.path.insert(0, __file__.rsplit("/", 2)[0])
 from daemon import Daemon
+from picture_files import PictureReader
 
 FLATLIGHT, FLATLIGHTD = sys.argv[1:3]
 # A job that would take hours, but for its end.
 ENDLESS = ["gallery:penumbra", "--method", "path-tracing", "--samples", "4000000000"]
 
 
-class EndToEnd(unittest.TestCase):
+class EndToEnd(PictureReader, unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="flatlight-test-")
         self.addCleanup(folder.cleanup)
@@ -108,32 +108,6 @@ class EndToEnd(unittest.TestCase):
             self.assertEqual(part["name"].decode(), probe["name"])
             self.assertEqual(row, struct.unpack(f"<{len(row)}f", struct.pack(f"<{len(row)}f", *probe["irradiance"])))
 
-    def read_png(self, name):
-        """Rows of grey values or of triples, of a PNG file of 8 bits."""
-        with open(self.path(name), "rb") as file:
-            data = file.read()
-        at, packed = 8, b""
-        while at < len(data):
-            size, kind = struct.unpack_from(">I4s", data, at)
-            chunk = data[at + 8:at + 8 + size]
-            if kind == b"IHDR":
-                width, height, bits, colour = struct.unpack_from(">IIBB", chunk)
-                self.assertEqual(bits, 8)
-            packed += chunk if kind == b"IDAT" else b""
-            at += 12 + size
-        channels = {0: 1, 2: 3}[colour]
-        raw, above, rows = zlib.decompress(packed), bytes(width * channels), []
-        for y in range(height):
-            kind, *line = raw[y * (width * channels + 1):(y + 1) * (width * channels + 1)]
-            for x in range(len(line)):
-                a = line[x - channels] if x >= channels else 0
-                b, c = above[x], above[x - channels] if x >= channels else 0
-                paeth = min((a, b, c), key=lambda v: abs(a + b - c - v))
-                line[x] = line[x] + (0, a, b, (a + b) // 2, paeth)[kind] & 255
-            above = line
-            rows.append([tuple(line[x:x + channels]) for x in range(0, len(line), channels)])
-        return rows
-
     def test_a_picture_of_any_scene(self):
         self.run_cli("render", "gallery:cornell", "--picture", "40x30", "--samples", "64", "-o", "p.png", "-o", "p.json",
                      "-o", "p.exr")
@@ -159,36 +133,23 @@ class EndToEnd(unittest.TestCase):
             self.assertIn("picture" if "x" not in bad or bad[0] == "0" else "allowed", self.run_cli(
                 "render", "gallery:cornell", "--picture", bad, status=2).stderr)
 
-    def read_exr(self, data):
-        """The attributes of each part of a multi-part OpenEXR file, and its pixels: one row of one channel of floats."""
-        parts, at = [], 8
-        def text():
-            nonlocal at
-            end = data.index(b"\0", at)
-            piece, at = data[at:end].decode(), end + 1
-            return piece
-        while data[at]:
-            part = {}
-            while name := text():
-                text()  # The type.
-                size = struct.unpack_from("<i", data, at)[0]
-                part[name] = data[at + 4:at + 4 + size]
-                at += 4 + size
-            parts.append(part)
-        rows = []
-        for number, part in enumerate(parts):
-            left, _, right, _ = struct.unpack("<4i", part["dataWindow"])
-            chunk = struct.unpack_from("<Q", data, at + 1 + 8 * number)[0]  # Each part has one chunk.
-            owner, _, size = struct.unpack_from("<iii", data, chunk)
-            self.assertEqual(owner, number)
-            packed, width = data[chunk + 12:chunk + 12 + size], right - left + 1
-            if size < 4 * width:  # Else it is stored as it is.
-                deltas = zlib.decompress(packed)
-                halves = [sum(deltas[:i + 1]) - 128 * i & 255 for i in range(len(deltas))]
-                middle = (len(halves) + 1) // 2
-                packed = bytes(halves[i // 2 + (middle if i % 2 else 0)] for i in range(len(halves)))
-            rows.append(struct.unpack(f"<{width}f", packed))
-        return parts, rows
+    def test_figures_of_derivatives(self):
+        run = self.run_cli("figure", "derivatives-occluded", "--samples", "256", "-o", "f.csv", "-o", "f.svg")
+        rows = {tuple(line.split()[:2]): line for line in run.stdout.splitlines() if line}
+        with open(self.path("f.csv"), newline="") as file:
+            table = list(csv.DictReader(file))
+        gradients = {name: [float(row["gradient"]) for row in table if row["probe"] == name]
+                     for name in ("exact", "stratified", "polyline", "arc-length")}
+        self.assertEqual({len(values) for values in gradients.values()}, {400})
+        worst = {name: max(abs(a - b) for a, b in zip(values, gradients["exact"])) for name, values in gradients.items()}
+        self.assertLess(worst["stratified"], 1e-9)
+        self.assertLess(worst["polyline"], 1e-9)
+        self.assertGreater(worst["arc-length"], 0.5)
+        self.assertIn("%", rows["arc-length", "gradient"])
+        with open(self.path("f.svg")) as file:
+            self.assertIn("arc-length", file.read())
+        self.assertIn("there are derivatives, derivatives-occluded, convergence",
+                      self.run_cli("figure", "nothing", status=2).stderr)
 
     def test_standard_output_is_for_machines(self):
         for arguments in (["-o", "-"], ["--json"], ["-o", "-", "--json", "--quiet"]):

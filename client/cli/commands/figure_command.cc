@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// The experiments of the papers, each one command.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/cli/commands/await_result.h"
+#include "client/cli/commands/commands.h"
+#include "client/cli/commands/console.h"
+#include "client/cli/commands/result_outputs.h"
+#include "client/cli/commands/session.h"
+#include "client/cli/comparison/comparison.h"
+#include "client/cli/formats/enum_names.h"
+#include "client/cli/jobs/job_calls.h"
+#include "client/cli/text/numbers.h"
+#include "client/cli/text/text_table.h"
+
+namespace flatlight {
+namespace {
+
+// Derivatives of direct light on the first probe of a gallery scene, exact and in all formulations.
+struct DerivativesFigure {
+  const char* name;
+  const char* scene;
+  const char* text;
+};
+
+constexpr DerivativesFigure kDerivatives[] = {
+    {"derivatives", "unit-light", "nothing blocks the light: all formulations agree with exact light"},
+    {"derivatives-occluded", "blocker",
+     "a plate blocks the light: arc-length does not see its shadow move, the others agree with exact light"}};
+
+struct ConvergenceFigure {
+  const char* name = "convergence";
+  std::vector<std::string> scenes = {"gallery:unit-light", "gallery:blocker", "gallery:penumbra", "gallery:ring"};
+  std::vector<std::uint32_t> budgets = {256, 1024, 4096, 16384};
+  std::uint32_t seeds = 4;
+};
+
+absl::StatusOr<v1::RenderResult> RenderFirstProbe(Session& session, const std::string& scene,
+                                                  const v1::Settings& settings, Console& console) {
+  v1::SceneSource source;
+  source.set_name("scenes/" + scene);
+  const auto job = CreateJob(session.connection(), source, settings);
+  if (!job.ok()) return job.status();
+  auto result = AwaitResult(session, *job, console);
+  if (!result.ok()) return result.status();
+  result->mutable_probes()->DeleteSubrange(1, result->probes_size() - 1);
+  return result;
+}
+
+std::string Share(const std::optional<double>& relative) { return relative ? FormatPercent(*relative) : "-"; }
+
+// Rows of a table: how far a formulation's derivatives are from exact ones.
+absl::Status AddRows(const std::string& name, const v1::RenderResult& found, const v1::RenderResult& exact,
+                     std::vector<std::vector<std::string>>& rows) {
+  const auto comparison = Compare(found, exact, std::nullopt);
+  if (!comparison.ok()) return comparison.status();
+  for (const QuantityComparison& quantity : comparison->quantities) {
+    if (quantity.quantity == "irradiance") continue;
+    rows.push_back({name, quantity.quantity, FormatValue(quantity.rms), Share(quantity.relative_rms),
+                    FormatValue(quantity.largest)});
+  }
+  return absl::OkStatus();
+}
+
+CommandResult DrawDerivatives(const DerivativesFigure& figure, const CommandLine& line, Interruption& interruption) {
+  const auto outputs = OutputsOf(line.outputs, line.json);
+  if (!outputs.ok()) return outputs.status();
+  Console console = ConsoleFor(*outputs, line.quiet);
+  const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
+  if (!session.ok()) return session.status();
+  Console silent(Console::Answer::kMachine, true);
+  v1::Settings settings;
+  settings.set_method(v1::Settings::EXACT);
+  const auto exact = RenderFirstProbe(**session, figure.scene, settings, silent);
+  if (!exact.ok()) return (*session)->Explain(exact.status());
+  v1::RenderResult all = *exact;
+  all.set_scene(figure.name);
+  // They speak of one of the results only.
+  all.clear_settings();
+  all.clear_plan();
+  all.clear_statistics();
+  all.mutable_probes(0)->set_name("exact");
+  std::vector<std::vector<std::string>> rows = {{"FORMULATION", "QUANTITY", "RMS ERROR", "RELATIVE", "LARGEST"}};
+  settings = line.settings;
+  settings.set_method(v1::Settings::RAY_TRACING);
+  for (const auto formulation : {v1::Settings::STRATIFIED, v1::Settings::POLYLINE, v1::Settings::ARC_LENGTH}) {
+    settings.set_formulation(formulation);
+    const auto result = RenderFirstProbe(**session, figure.scene, settings, silent);
+    if (!result.ok()) return (*session)->Explain(result.status());
+    const std::string name = OptionName(formulation);
+    if (absl::Status added = AddRows(name, *result, *exact, rows); !added.ok()) return added;
+    *all.add_probes() = result->probes(0);
+    all.mutable_probes(all.probes_size() - 1)->set_name(name);
+  }
+  console.Say(std::string(figure.name) + " (gallery:" + figure.scene + "): " + figure.text + "\n\n" +
+              FormatTable(rows));
+  if (absl::Status written = WriteResult(all, *outputs, console, interruption); !written.ok()) return written;
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+std::vector<std::string> FigureNames() {
+  std::vector<std::string> names;
+  for (const DerivativesFigure& figure : kDerivatives) names.emplace_back(figure.name);
+  names.emplace_back(ConvergenceFigure().name);
+  return names;
+}
+
+CommandResult Figure(const CommandLine& line, Interruption& interruption) {
+  for (const DerivativesFigure& figure : kDerivatives) {
+    if (line.figure == figure.name) return DrawDerivatives(figure, line, interruption);
+  }
+  const ConvergenceFigure convergence;
+  if (line.figure == convergence.name) {
+    CommandLine bench = line;
+    bench.bench.scenes = convergence.scenes;
+    bench.bench.budgets = convergence.budgets;
+    bench.bench.seeds = convergence.seeds;
+    return BenchMethods(bench, interruption);
+  }
+  std::string known;
+  for (const std::string& name : FigureNames()) known += (known.empty() ? "" : ", ") + name;
+  return UsageError("there is no figure '" + Printable(line.figure) + "'; there are " + known);
+}
+
+}  // namespace flatlight
