@@ -16,7 +16,8 @@ struct ProbeField {
   std::vector<double> gradient_error;
   std::vector<double> hessian;  // W/m^3
   std::vector<double> hessian_error;
-  std::vector<double> samples;  // Paths; one value a point.
+  std::vector<double> samples;           // Paths; one value a point.
+  std::vector<double> irradiance_error;  // W/m; bounds, of a method that states one for each value.
 };
 
 // The state of a rendering: cumulative, a newer one replaces an older one.
@@ -31,7 +32,7 @@ struct RenderProgress {
   double samples = 0;   // Paths of the point that has most.
   double rays = 0;
   std::optional<double> remaining_seconds;
-  // Largest over the points: standard error / max(irradiance, 1 % of the probe's mean).
+  // Largest over the points: standard error or bound / max(irradiance, 1 % of the probe's mean).
   std::optional<double> relative_error;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 #include <string>
+#include <variant>
 
 #include "core/plane/ray_tracing/ray_tree.h"
 #include "core/render/light_paths.h"
@@ -18,6 +19,9 @@ constexpr std::uint32_t kDefaultSamples = 1024;
 constexpr std::uint32_t kDefaultFirstRays = 256;
 // Of a pixel: a path goes through hundreds of them.
 constexpr std::uint32_t kDefaultPictureSamples = 8;
+constexpr double kReferenceError = 1e-6;
+// Of straight and arced pieces: everything that a panel may see is kept, some 100 kB a piece.
+constexpr std::size_t kMostReferencePieces = 2048;
 // Paths of a block: samples come in whole ones.
 constexpr double kBlockSamples = 16;
 
@@ -55,7 +59,8 @@ void CheckRanges(const Settings& settings, Diagnostics& diagnostics) {
 void CheckDerivatives(const Settings& settings, Diagnostics& diagnostics) {
   const bool none = settings.derivatives.value_or(Derivatives::kHessian) == Derivatives::kNone;
   if (settings.method == Method::kPathTracing && settings.derivatives.has_value() && !none) {
-    diagnostics.Add("settings.derivatives", "path-tracing gives none: leave this out, or use exact or ray-tracing");
+    diagnostics.Add("settings.derivatives",
+                    "path-tracing gives none: leave this out, or use exact, ray-tracing or reference");
   }
   if (!settings.formulation.has_value()) return;
   if (settings.method != Method::kRayTracing) {
@@ -63,6 +68,39 @@ void CheckDerivatives(const Settings& settings, Diagnostics& diagnostics) {
   } else if (none) {
     diagnostics.Add("settings.formulation", "says how derivatives are found, but derivatives none asks for none");
   }
+}
+
+void CheckFading(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
+  if (settings.max_bounces.has_value() || !LightNeverFades(scene)) return;
+  diagnostics.Add(
+      "settings.maxBounces",
+      "is absent, but every curve reflects all light and some enclose an area, where light never fades: set "
+      "it, or give a curve a reflectance below 1");
+}
+
+void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
+  if (scene.traits().pixels > 0) {
+    diagnostics.Add("settings.method",
+                    "reference gives irradiance at points, and a probe of this scene is a picture: use path-tracing");
+  }
+  if (settings.samples.has_value())
+    diagnostics.Add("settings.samples", "does not apply to reference, which draws no samples");
+  if (settings.seed.has_value())
+    diagnostics.Add("settings.seed", "does not apply to reference, which draws no samples");
+  if (!DirectLightOnly(scene, settings) && !scene.traits().lambertian) {
+    const auto other = std::find_if(scene.curves().begin(), scene.curves().end(), [](const Curve& curve) {
+      return !std::holds_alternative<Lambertian>(curve.material) && !curve.reflectance.IsBlack();
+    });
+    diagnostics.Add("settings.method",
+                    "reference needs a scene that reflects by lambertian materials alone, and curve \"" + other->name +
+                        "\" has another: use path-tracing");
+  }
+  if (scene.traits().elements > kMostReferencePieces) {
+    diagnostics.Add("settings.method", "reference does scenes of up to " + Text(kMostReferencePieces) +
+                                           " straight and arced pieces, and this one has " +
+                                           Text(scene.traits().elements) + ": use path-tracing");
+  }
+  CheckFading(scene, settings, diagnostics);
 }
 
 // Settings that the method would ignore, and scenes that it cannot do.
@@ -86,7 +124,7 @@ void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diag
     if (settings.time_limit.has_value())
       diagnostics.Add("settings.timeLimit", "does not apply to exact, which draws no samples");
     if (!DirectLightOnly(scene, settings)) {
-      const std::string cure = "set max bounces to 0, or use path-tracing";
+      const std::string cure = "set max bounces to 0, or use reference or path-tracing";
       if (settings.max_bounces.has_value()) {
         diagnostics.Add("settings.maxBounces", "is " + Text(*settings.max_bounces) +
                                                    ", but exact gives direct light, and this scene reflects: " + cure);
@@ -96,24 +134,25 @@ void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diag
     }
     return;
   }
+  if (settings.method == Method::kReference) return CheckReference(scene, settings, diagnostics);
   if (scene.traits().probe_points > 0 && !DirectLightOnly(scene, settings) && HasHiddenCaustics(scene)) {
     diagnostics.Add("settings.method",
                     MethodNames()[static_cast<std::size_t>(*settings.method)] +
                         " cannot find the light that plane.lights send over mirrors and glass: set max bounces "
                         "to 0, or give the light a surface, a small arc that emits");
   }
-  if (!settings.max_bounces.has_value() && LightNeverFades(scene)) {
-    diagnostics.Add(
-        "settings.maxBounces",
-        "is absent, but every curve reflects all light and some enclose an area, where light never fades: set "
-        "it, or give a curve a reflectance below 1");
-  }
+  CheckFading(scene, settings, diagnostics);
 }
 
 void FillMethodDefaults(const Scene& scene, Plan& plan) {
   Settings& settings = plan.settings;
   if (settings.method == Method::kExact) {
     if (!settings.derivatives.has_value()) settings.derivatives = Derivatives::kHessian;
+    return;
+  }
+  if (settings.method == Method::kReference) {
+    if (!settings.derivatives.has_value()) settings.derivatives = Derivatives::kHessian;
+    if (!settings.target_error.has_value()) settings.target_error = kReferenceError;
     return;
   }
   if (!settings.seed.has_value()) settings.seed = 0;
@@ -185,6 +224,8 @@ void AddPasses(const Scene& scene, Plan& plan) {
   if (plan.settings.method == Method::kExact) {
     pass.name = plan.triangles ? "direct light in closed form, through triangles where they can be made"
                                : "direct light in closed form";
+  } else if (plan.settings.method == Method::kReference) {
+    pass.name = "light between panels, refined until its error is small";
   } else {
     const bool branching = plan.settings.method == Method::kRayTracing;
     pass.name = branching ? "branching rays from the points" : "paths from the points";
@@ -209,30 +250,24 @@ void AddPasses(const Scene& scene, Plan& plan) {
   plan.passes.push_back(pictures);
 }
 
+std::string Bounces(const Plan& plan) {
+  const auto most = plan.settings.max_bounces;
+  if (most == 0u || plan.Takes(skip::kBounces)) return "direct light";
+  return most ? "up to " + Text(*most) + (*most == 1 ? " bounce" : " bounces") : "all bounces";
+}
+
 std::string Summary(const Scene& scene, const Plan& plan) {
   const std::size_t points = scene.traits().probe_points;
   const std::size_t pixels = scene.traits().pixels;
-  std::string text;
-  if (plan.settings.method == Method::kExact) {
-    text = "Exact direct light";
-    if (plan.settings.derivatives == Derivatives::kGradient) text += " and its gradient";
-    if (plan.settings.derivatives == Derivatives::kHessian) text += " with gradient and Hessian";
-    text += " at ";
-  } else {
-    text = points == 0 && pixels > 0                     ? "Light tracing of "
-           : plan.settings.method == Method::kRayTracing ? "Ray tracing of "
-                                                         : "Path tracing of ";
-    if (plan.settings.max_bounces == 0u || plan.Takes(skip::kBounces)) {
-      text += "direct light";
-    } else if (plan.settings.max_bounces.has_value()) {
-      text += "up to " + Text(*plan.settings.max_bounces) + (*plan.settings.max_bounces == 1 ? " bounce" : " bounces");
-    } else {
-      text += "all bounces";
-    }
-    if (plan.settings.derivatives == Derivatives::kGradient) text += " with gradient";
-    if (plan.settings.derivatives == Derivatives::kHessian) text += " with gradient and Hessian";
-    text += " at ";
+  std::string text = "Exact direct light";
+  if (plan.settings.method == Method::kPathTracing) {
+    text = (points == 0 && pixels > 0 ? "Light tracing of " : "Path tracing of ") + Bounces(plan);
   }
+  if (plan.settings.method == Method::kRayTracing) text = "Ray tracing of " + Bounces(plan);
+  if (plan.settings.method == Method::kReference) text = "Reference of " + Bounces(plan);
+  if (plan.settings.derivatives == Derivatives::kGradient) text += " and its gradient";
+  if (plan.settings.derivatives == Derivatives::kHessian) text += " with gradient and Hessian";
+  text += " at ";
   if (points > 0 || pixels == 0) text += std::to_string(points) + (points == 1 ? " point" : " points");
   if (pixels > 0) text += (points > 0 ? " and in " : "") + std::to_string(pixels) + " pixels";
   if (plan.settings.method != Method::kExact) {
@@ -253,7 +288,7 @@ std::string Summary(const Scene& scene, const Plan& plan) {
 }  // namespace
 
 const std::vector<std::string>& MethodNames() {
-  static const auto& names = *new std::vector<std::string>{"exact", "path-tracing", "ray-tracing"};
+  static const auto& names = *new std::vector<std::string>{"exact", "path-tracing", "ray-tracing", "reference"};
   return names;
 }
 

@@ -61,7 +61,7 @@ struct Plan {
 // All names that Settings::no_skip may hold.
 const std::vector<std::string>& SkipNames();
 
-// "exact", "path-tracing".
+// "exact", "path-tracing", "reference".
 const std::vector<std::string>& MethodNames();
 
 // Absent if the settings have mistakes or don't suit the scene; `diagnostics` then says which ("settings.samples").

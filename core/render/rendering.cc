@@ -8,6 +8,7 @@
 #include "core/render/joint_rendering.h"
 #include "core/render/path_tracing_rendering.h"
 #include "core/render/ray_tracing_rendering.h"
+#include "core/render/reference_rendering.h"
 #include "core/render/skips.h"
 
 namespace flatlight {
@@ -21,6 +22,9 @@ std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, co
   }
   if (plan.settings.method == Method::kRayTracing) {
     return std::make_unique<RayTracingRendering>(std::move(scene), std::move(caster), plan);
+  }
+  if (plan.settings.method == Method::kReference) {
+    return std::make_unique<ReferenceRendering>(std::move(scene), caster, plan);
   }
   const SceneTraits& traits = scene->traits();
   if (traits.pixels == 0) return std::make_unique<PathTracingRendering>(std::move(scene), std::move(caster), plan);

@@ -16,7 +16,13 @@
 
 namespace flatlight {
 
-enum class EndReason : std::uint8_t { kConverged, kSamplesDone, kTargetReached, kTimeLimit };
+enum class EndReason : std::uint8_t {
+  kConverged,
+  kSamplesDone,
+  kTargetReached,
+  kTimeLimit,
+  kAccuracyLimit  // The target error was not reached; rounding or memory let the error become no smaller.
+};
 
 // How far a rendering has come is a function of the blocks done, never of who did them: for equal blocks done the field
 // has equal bits, whatever the threads, the slices and the budgets were.

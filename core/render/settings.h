@@ -9,7 +9,7 @@
 
 namespace flatlight {
 
-enum class Method : std::uint8_t { kExact, kPathTracing, kRayTracing };
+enum class Method : std::uint8_t { kExact, kPathTracing, kRayTracing, kReference };
 enum class Derivatives : std::uint8_t { kNone, kGradient, kHessian };
 
 // What the caller asks for; absent means the method's default. See settings.proto for units and ranges.

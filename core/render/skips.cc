@@ -95,6 +95,13 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
   const bool branching = settings.method == Method::kRayTracing;
   decisions.Add(skip::kColour, traits.grey && !branching, "all spectra are grey: one channel is computed",
                 branching ? "branching rays carry all channels at once" : "some spectra are coloured");
+  if (settings.method == Method::kReference) {
+    const std::string reason = "light goes from panel to panel: it has no paths and no samples";
+    decisions.Add(skip::kVisibility, false, "", "what each panel sees is found with what may hide it");
+    for (const char* name : {skip::kBounces, skip::kBlackPaths, skip::kUnseenEmitters, skip::kConvergedPoints})
+      decisions.Add(name, false, "", reason);
+    return decisions.Take();
+  }
   const bool nothing_blocks = NothingBlocks(scene);
   const std::string nothing_reason = "nothing can stand between two points: blockers are not looked for";
   if (settings.method == Method::kExact) {

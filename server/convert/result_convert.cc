@@ -64,6 +64,7 @@ void FillProbeValues(const Field& field, int channels, std::size_t probe, std::s
   out.set_channels(static_cast<std::uint32_t>(channels));
   AddSlice(source.irradiance, first, count, width, *out.mutable_irradiance());
   AddSlice(source.standard_error, first, count, width, *out.mutable_standard_error());
+  AddSlice(source.irradiance_error, first, count, width, *out.mutable_irradiance_error());
   AddSlice(source.gradient, first, count, width, *out.mutable_gradient());
   AddSlice(source.gradient_error, first, count, width, *out.mutable_gradient_error());
   AddSlice(source.hessian, first, count, width, *out.mutable_hessian());
@@ -97,6 +98,8 @@ v1::EndReason EndReasonToProto(EndReason reason) {
       return v1::TARGET_REACHED;
     case EndReason::kTimeLimit:
       return v1::TIME_LIMIT;
+    case EndReason::kAccuracyLimit:
+      return v1::ACCURACY_LIMIT;
   }
   return v1::END_REASON_UNSPECIFIED;
 }
@@ -110,6 +113,7 @@ v1::SceneTraits TraitsToProto(const SceneTraits& traits) {
   proto.set_max_reflectance(traits.max_reflectance);
   proto.set_grey(traits.grey);
   proto.set_pixels(static_cast<double>(traits.pixels));
+  proto.set_lambertian(traits.lambertian);
   return proto;
 }
 

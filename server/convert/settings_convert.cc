@@ -14,6 +14,8 @@ v1::Settings::Method ToProto(Method method) {
       return v1::Settings::PATH_TRACING;
     case Method::kRayTracing:
       return v1::Settings::RAY_TRACING;
+    case Method::kReference:
+      return v1::Settings::REFERENCE;
   }
   return v1::Settings::METHOD_UNSPECIFIED;
 }
@@ -65,6 +67,7 @@ Settings SettingsFromProto(const v1::Settings& proto, Diagnostics& diagnostics) 
   if (proto.formulation() == v1::Settings::STRATIFIED) settings.formulation = Formulation::kStratified;
   if (proto.formulation() == v1::Settings::POLYLINE) settings.formulation = Formulation::kPolyline;
   if (proto.formulation() == v1::Settings::ARC_LENGTH) settings.formulation = Formulation::kArcLength;
+  if (proto.method() == v1::Settings::REFERENCE) settings.method = Method::kReference;
   if (proto.has_samples()) settings.samples = proto.samples();
   if (proto.has_max_bounces()) settings.max_bounces = proto.max_bounces();
   if (proto.has_seed()) settings.seed = proto.seed();

@@ -20,7 +20,7 @@ constexpr Quantity kQuantities[] = {
     {"irradiance", &ProbeField::irradiance}, {"standard_error", &ProbeField::standard_error},
     {"gradient", &ProbeField::gradient},     {"gradient_error", &ProbeField::gradient_error},
     {"hessian", &ProbeField::hessian},       {"hessian_error", &ProbeField::hessian_error},
-    {"samples", &ProbeField::samples},
+    {"samples", &ProbeField::samples},       {"irradiance_error", &ProbeField::irradiance_error},
 };
 
 absl::Status NotFinite(const std::string& what, double value) {

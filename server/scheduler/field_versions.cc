@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::vector<double> ProbeField::*kArrays[] = {
     &ProbeField::irradiance, &ProbeField::standard_error, &ProbeField::gradient, &ProbeField::gradient_error,
-    &ProbeField::hessian,    &ProbeField::hessian_error,  &ProbeField::samples};
+    &ProbeField::hessian,    &ProbeField::hessian_error,  &ProbeField::samples,  &ProbeField::irradiance_error};
 
 // Whether the values of points [first, last) have equal bits.
 bool EqualValues(const ProbeField& a, const ProbeField& b, std::size_t points, std::size_t first, std::size_t last) {

@@ -35,6 +35,8 @@ std::string EndText(v1::EndReason reason) {
       return "target error reached";
     case v1::TIME_LIMIT:
       return "time limit reached";
+    case v1::ACCURACY_LIMIT:
+      return "target error out of reach: ended";
     default:
       return "ended before its time";
   }

@@ -75,7 +75,8 @@ void AddThreadsAndSkips(CLI::App& app, SettingsOptions& settings) {
 
 void AddSettings(CLI::App& app, Raw& raw) {
   SettingsOptions& settings = raw.settings;
-  app.add_option("--method", settings.method, "exact (direct light), path-tracing or ray-tracing")->type_name("NAME");
+  app.add_option("--method", settings.method, "exact (direct light), path-tracing, ray-tracing or reference")
+      ->type_name("NAME");
   app.add_option("--samples", settings.samples, "paths a point (default 1024; first rays of ray-tracing: 256)")
       ->type_name("N");
   AddBounces(app, settings);
@@ -177,7 +178,7 @@ void AddBench(CLI::App& app, Raw& raw) {
   SettingsOptions& settings = raw.settings;
   bench.add_option("SCENE", texts.scenes, "scene files or gallery:NAME");
   bench.add_flag("--gallery", texts.gallery, "all scenes of the gallery");
-  bench.add_option("--methods", texts.methods, "exact,path-tracing,... (default: all the server has)")
+  bench.add_option("--methods", texts.methods, "exact,path-tracing,... (default: all the server has but reference)")
       ->type_name("NAMES");
   bench.add_option("--budgets", texts.budgets, "samples: 16,64,256,... (default: from 16 up, as time allows)")
       ->type_name("LIST");

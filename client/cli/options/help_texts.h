@@ -89,9 +89,9 @@ Examples:
 
 inline constexpr char kBenchHelp[] =
     R"(Renders scenes with methods and budgets (samples), one job at a time, and measures every result against the truth: exact
-light where there is no reflection. A scene that reflects is benched with --max-bounces 0, unless there is a truth for
-all its bounces: --truth, a stored result of the same scene, or --truth-samples, whose own error is taken out of the
-errors and shown. Every method is warmed up once; then rounds go through all methods and budgets, each with another
+light where there is no reflection, the reference of all bounces where lambertian curves reflect. Other scenes are
+benched with --max-bounces 0, unless there is a truth for all their bounces: --truth, a stored result of the same scene,
+or --truth-samples, whose own error is taken out of the errors and shown. Every method is warmed up once; then rounds go through all methods and budgets, each with another
 seed, so that a machine that gets slower does so for all. Times are the server's own; processor time is what counts.
 
 The ending of OUT picks its form:

@@ -151,7 +151,7 @@ TEST(PlanTest, ExactRefusesReflections) {
   EXPECT_THAT(
       Mistakes(*Reflecting(), settings),
       ElementsAre("settings.method: exact gives direct light, and this scene reflects: set max bounces to 0, or "
-                  "use path-tracing"));
+                  "use reference or path-tracing"));
   settings.max_bounces = 2;
   EXPECT_THAT(Mistakes(*Reflecting(), settings), ElementsAre(HasSubstr("settings.maxBounces: is 2")));
   settings.max_bounces = 0;

@@ -89,7 +89,7 @@ TEST(ResultConvertTest, WhatTheFieldLacksIsAbsent) {
 
 TEST(ResultConvertTest, EveryArrayReachesItsOwnField) {
   Field field;
-  field.probes.push_back({{1}, {2}, {3}, {4}, {5}, {6}, {7}});
+  field.probes.push_back({{1}, {2}, {3}, {4}, {5}, {6}, {7}, {8}});
   v1::ProbeResult out;
   FillProbeValues(field, 1, 0, 0, 1, out);
   EXPECT_THAT(out.irradiance(), ElementsAre(1));
@@ -99,6 +99,7 @@ TEST(ResultConvertTest, EveryArrayReachesItsOwnField) {
   EXPECT_THAT(out.hessian(), ElementsAre(5));
   EXPECT_THAT(out.hessian_error(), ElementsAre(6));
   EXPECT_THAT(out.samples(), ElementsAre(7));
+  EXPECT_THAT(out.irradiance_error(), ElementsAre(8));
 }
 
 TEST(ResultConvertTest, AResultHasAllProbes) {
@@ -151,6 +152,7 @@ TEST(ResultConvertTest, EndReasons) {
   EXPECT_EQ(EndReasonToProto(EndReason::kSamplesDone), v1::SAMPLES_DONE);
   EXPECT_EQ(EndReasonToProto(EndReason::kTargetReached), v1::TARGET_REACHED);
   EXPECT_EQ(EndReasonToProto(EndReason::kTimeLimit), v1::TIME_LIMIT);
+  EXPECT_EQ(EndReasonToProto(EndReason::kAccuracyLimit), v1::ACCURACY_LIMIT);
 }
 
 TEST(ResultConvertTest, Traits) {

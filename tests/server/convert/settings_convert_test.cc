@@ -67,7 +67,8 @@ TEST(SettingsConvertTest, WhatIsAbsentStaysAbsent) {
 }
 
 TEST(SettingsConvertTest, EveryMethodAndEveryOrderOfDerivativesComesBack) {
-  for (const auto method : {v1::Settings::EXACT, v1::Settings::PATH_TRACING, v1::Settings::RAY_TRACING}) {
+  for (const auto method :
+       {v1::Settings::EXACT, v1::Settings::PATH_TRACING, v1::Settings::RAY_TRACING, v1::Settings::REFERENCE}) {
     for (const auto derivatives : {v1::Settings::NONE, v1::Settings::GRADIENT, v1::Settings::HESSIAN}) {
       v1::Settings proto;
       proto.set_method(method);
@@ -98,7 +99,7 @@ TEST(SettingsConvertTest, RefusesWhatAnotherVersionMeant) {
   EXPECT_EQ(diagnostics.kept()[0].path, "settings.77");
   EXPECT_EQ(diagnostics.kept()[1].path, "settings.method");
   EXPECT_THAT(diagnostics.kept()[1].message, HasSubstr("42"));
-  EXPECT_THAT(diagnostics.kept()[1].message, HasSubstr("EXACT, PATH_TRACING"));
+  EXPECT_THAT(diagnostics.kept()[1].message, HasSubstr("EXACT, PATH_TRACING, RAY_TRACING, REFERENCE"));
 }
 
 TEST(SettingsConvertTest, APlanKeepsItsReasons) {

@@ -55,8 +55,9 @@ inline Ended Render(const std::shared_ptr<const Scene>& scene, const Settings& s
 inline std::uint64_t HashOf(const Field& field) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const ProbeField& probe : field.probes) {
-    for (const std::vector<double>* values : {&probe.irradiance, &probe.standard_error, &probe.gradient, &probe.hessian,
-                                              &probe.gradient_error, &probe.hessian_error, &probe.samples}) {
+    for (const std::vector<double>* values :
+         {&probe.irradiance, &probe.standard_error, &probe.gradient, &probe.hessian, &probe.gradient_error,
+          &probe.hessian_error, &probe.samples, &probe.irradiance_error}) {
       for (const double value : *values) {
         std::uint64_t bits;
         std::memcpy(&bits, &value, sizeof(bits));

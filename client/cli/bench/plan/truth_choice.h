@@ -23,15 +23,17 @@ struct TruthChoice {
 
 struct TruthQuestion {
   double max_reflectance = 0;                // Of the scene.
+  bool lambertian = true;                    // Whether nothing but Lambertian curves reflects in it.
   std::optional<std::uint32_t> max_bounces;  // As the user wants it.
   const v1::RenderResult* file = nullptr;    // The user's truth for the scene, if there is one.
   std::string file_name;                     // "file 0123456789ab".
   std::optional<std::uint32_t> samples;      // Of --truth-samples.
 };
 
-// The best truth that there is: the user's own; else many samples, if the user wants so; else the server's `reference`;
-// else `exact`, which is of direct light, and if bounces were not asked for the runs then are, too. Bounces that
-// nothing gives the truth of are bad usage: the message is in `note`, and neither `render` nor `file` is set.
+// The best truth that there is: the user's own; else many samples, if the user wants so; else `exact`, where all
+// light is direct; else the server's `reference`, where it can do the scene; else `exact` all the same, and if bounces
+// were not asked for the runs then are, too. Bounces that nothing gives the truth of are bad usage: the message is in
+// `note`, and neither `render` nor `file` is set.
 TruthChoice ChooseTruth(const TruthQuestion& question, const v1::GetCapabilitiesResponse& server);
 
 }  // namespace flatlight

@@ -112,6 +112,7 @@ class Preparation {
   absl::Status Choose(const v1::ValidateSceneResponse& scene, Subject& subject) {
     TruthQuestion question;
     question.max_reflectance = scene.traits().max_reflectance();
+    question.lambertian = scene.traits().lambertian();
     if (settings_.has_max_bounces()) question.max_bounces = settings_.max_bounces();
     question.samples = options_.truth_samples;
     if (TruthFile* file = FileFor(scene)) {
@@ -133,8 +134,11 @@ class Preparation {
 
   absl::Status AddMethods(Subject& subject) {
     std::vector<std::string> names = options_.methods;
-    if (names.empty())
+    if (names.empty()) {
       names.assign(connection_.capabilities().methods().begin(), connection_.capabilities().methods().end());
+      // Against itself it has no error.
+      names.erase(std::remove(names.begin(), names.end(), "reference"), names.end());
+    }
     const auto& type = *google::protobuf::GetEnumDescriptor<v1::Settings::Method>();
     absl::Status failure;
     std::vector<std::string> notes;

@@ -43,6 +43,21 @@ TEST(TruthChoice, ASceneThatReflectsIsBenchedWithDirectLight) {
   EXPECT_THAT(choice.note, HasSubstr("--truth"));
 }
 
+TEST(TruthChoice, ReferenceWhereLambertianCurvesReflect) {
+  const v1::GetCapabilitiesResponse server = Server({"exact", "path-tracing", "reference"});
+  TruthQuestion question;
+  question.max_reflectance = 0.5;
+  EXPECT_EQ(ChooseTruth(question, server).render->method(), v1::Settings::REFERENCE);
+  EXPECT_FALSE(ChooseTruth(question, server).max_bounces);
+  question.max_bounces = 3;
+  EXPECT_EQ(ChooseTruth(question, server).render->max_bounces(), 3U);
+  EXPECT_EQ(ChooseTruth({}, server).name, "exact") << "nothing reflects";
+  question.max_bounces.reset();
+  question.lambertian = false;
+  EXPECT_EQ(ChooseTruth(question, server).name, "exact");
+  EXPECT_EQ(ChooseTruth(question, server).max_bounces, 0U);
+}
+
 TEST(TruthChoice, BouncesWithoutATruthAreRefused) {
   TruthQuestion question;
   question.max_reflectance = 0.5;

@@ -176,7 +176,7 @@ TEST(CommandLine, MistakesAreNamed) {
   EXPECT_THAT(ErrorOf({"jobs", "--server", ""}), HasSubstr("--server"));
   EXPECT_EQ(ErrorOf({"compare", "a", "b", "--tolerance", "-1"}), "--tolerance: '-1'; must be a number from 0");
   EXPECT_EQ(ErrorOf({"render", "a", "--method", "magic"}),
-            "--method: 'magic'; must be one of exact, path-tracing, ray-tracing");
+            "--method: 'magic'; must be one of exact, path-tracing, ray-tracing, reference");
   EXPECT_EQ(ErrorOf({"render", "a", "--samples", "0", "--threads", "x"}),
             "--samples: '0'; must be a whole number from 1 to 4294967295\n"
             "--threads: 'x'; must be a whole number from 1 to 4294967295");

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_PLANE_REFERENCE_RADIOSITY_H_
+#define FLATLIGHT_CORE_PLANE_REFERENCE_RADIOSITY_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/plane/ray_caster.h"
+#include "core/plane/reference/panel_light.h"
+#include "core/plane/reference/panel_mesh.h"
+#include "core/plane/reference/reception.h"
+#include "core/plane/reference/row.h"
+
+namespace flatlight {
+
+// The light that leaves the panels of a mesh by reflection, L = rho/2 (E_direct + T L): a polynomial on each, right at
+// its Gauss points; and bounds on its error, from what it leaves over between them (THEORY 18 B7, B8).
+//
+// With the residual r = b + T L - L of a computed L the error is e = r + T e. So e = r + e1 with e1 = T r + T e1, and
+// |e1| is at most the solution of w = |T r| + T w, for T keeps what is positive so. T r is small, for r has all but no
+// mean on a panel; so the bound stays sharp where curves reflect nearly all.
+//
+// Steps, in this order: BuildRows of all panels, Solve, Check of all panels, Spread of all panels, Bound. Steps of
+// panels may run at once on several threads. Equal bits for any number of threads.
+class Radiosity {
+ public:
+  // Runs work(0) ... work(count - 1).
+  using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
+  using Stop = std::function<bool()>;
+
+  // Requires reflection by Lambertian curves alone, and max_bounces != 0 (absent: all). Only the first `channels` are
+  // computed. The caster and the charts must outlive this.
+  // Rows of the mesh that this one was made of save most of the work for new ones.
+  struct Rows {
+    std::vector<Row> nodes;    // By panel, then node.
+    std::vector<Row> between;  // By panel, then point between nodes.
+  };
+  Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, PanelMesh mesh, std::size_t channels,
+            std::optional<std::uint32_t> max_bounces, Rows before = {});
+
+  const PanelMesh& mesh() const { return mesh_; }
+  // In bytes, of the rows built so far.
+  std::size_t memory() const;
+
+  // Leaves none.
+  Rows TakeRows() { return std::move(rows_); }
+
+  void BuildRows(RowBuilder& builder, std::size_t panel);
+  void Solve(const Loop& loop, const Stop& stop);
+  void Check(std::size_t panel);
+  void Spread(std::size_t panel);
+  void Bound(const Loop& loop, const Stop& stop);
+
+  const PanelLight& light() const { return light_; }
+  const LightErrors& errors() const { return errors_; }
+  LightErrors& errors() { return errors_; }
+  // What the residual of each panel adds to |T r| of others, summed over them.
+  std::vector<double> Influence() const;
+
+ private:
+  using Values = std::vector<double>;  // By panel, then node.
+
+  double HalfReflectance(std::size_t panel, std::size_t channel) const;
+  void ToCoefficients(const Values& values, Values& coefficients) const;
+  // T of a light.
+  void Transport(const Loop& loop, std::size_t channel, const Values& coefficients, Values& out) const;
+  // What has come of a source after so many bounces; `before` is what came after one less.
+  Values Accumulate(const Loop& loop, const Stop& stop, std::size_t channel, const Values& source,
+                    std::optional<std::uint32_t> bounces, Values* before) const;
+
+  const Scene& scene_;
+  const std::vector<Chart>& charts_;
+  PanelMesh mesh_;
+  std::size_t channels_;
+  std::optional<std::uint32_t> max_bounces_;
+  Values to_coefficients_, to_residual_;  // Matrices.
+  Rows rows_, rows_before_;
+  Values brightest_;                   // By channel: what no radiance is above.
+  PanelLight light_, first_, before_;  // Of all bounces, of one, of one less than all.
+  PanelLight first_residual_;
+  LightErrors errors_;
+  Values rounding_;  // By panel, then channel.
+  Values spread_;    // By panel, node, channel: bounds on |T r|.
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_PLANE_REFERENCE_RADIOSITY_H_

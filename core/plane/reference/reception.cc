@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/plane/reference/reception.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/tolerances.h"
+#include "core/plane/reference/kernel.h"
+#include "core/plane/reference/row.h"
+
+namespace flatlight {
+namespace {
+
+// Of a term of a sum over Gauss points: a few operations, and its share of the sum's.
+constexpr double kRounding = 8 * kUnitRoundoff;
+
+}  // namespace
+
+Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
+                       const LightErrors* errors, int derivatives) {
+  Received sum;
+  shares_.clear();
+  for (const VisiblePiece& piece : outlook_.From(receiver))
+    AddPiece(receiver, mesh, light, errors, derivatives, piece, sum);
+  return sum;
+}
+
+void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
+                         const LightErrors* errors, int derivatives, const VisiblePiece& piece, Received& sum) {
+  const PanelMesh::Range range = mesh.On(piece.element, piece.side);
+  if (range.first == range.last) return;
+  const Chart& chart = charts_[static_cast<std::size_t>(piece.element)];
+  const double radius = OwnRadius(scene_, receiver, piece.element);
+  const double low = std::min(piece.begin.u, piece.end.u), high = std::max(piece.begin.u, piece.end.u);
+  const std::size_t channels = light.channels();
+  double p[kResidualCoefficients];
+  for (std::size_t i = range.first; i < range.last; ++i) {
+    const Panel& panel = mesh.panels()[i];
+    const double from = std::max(low, panel.low), to = std::min(high, panel.high);
+    if (!(from < to)) continue;
+    double absolute[3] = {0, 0, 0};
+    Spectrum off[3];
+    const auto add_weights = [&](double u, const double(&weight)[3]) {
+      Legendre(panel.Local(u), errors ? kResidualCoefficients : kLightCoefficients, p);
+      for (int m = 0; m <= derivatives; ++m) absolute[m] += std::abs(weight[m]);
+      for (std::size_t c = 0; c < channels; ++c) {
+        const double radiance = light.At(i, c, p);
+        const double residual = errors ? errors->residual.At(i, c, p) : 0;
+        for (int m = 0; m <= derivatives; ++m) {
+          sum.value[m].value[c] += weight[m] * radiance;
+          sum.rounding[m].value[c] += kRounding * std::abs(weight[m] * radiance);
+          off[m].value[c] += weight[m] * residual;
+        }
+      }
+    };
+    const auto add = [&](double u, const Chart::Place& place, double weight) {
+      const Kernel kernel(receiver, place, piece.side, radius);
+      double weights[3] = {weight * kernel.Value(), 0, 0};
+      if (derivatives > 0) {
+        const Kernel::Derivatives d = kernel.Derive();
+        weights[1] = weight * d.first, weights[2] = weight * d.second;
+      }
+      add_weights(u, weights);
+    };
+    const auto rest = [&](double u, double begin, double end) {
+      add_weights(u, {SineBetween(chart, receiver, begin, end), 0, 0});
+    };
+    ForEachPoint(chart, receiver.position, radius != 0, count_, from, to, 0, add, rest);
+    if (!errors) continue;
+    double share = 0;
+    for (std::size_t c = 0; c < channels; ++c) {
+      const double own = errors->missed[i * channels + c], other = errors->value[i * channels + c];
+      for (int m = 0; m <= derivatives; ++m) {
+        // Derivatives see more of what is not smooth.
+        const double known = std::abs(off[m].value[c]), missed = absolute[m] * own;
+        sum.error[m].value[c] += (m == 0 ? known + missed : 1.25 * known + 4 * missed) + absolute[m] * other;
+      }
+      share = std::max(share, std::abs(off[0].value[c]) + absolute[0] * own);
+    }
+    shares_.emplace_back(i, share);
+  }
+  AddEnd(receiver, mesh, light, errors, derivatives, piece, false, sum);
+  AddEnd(receiver, mesh, light, errors, derivatives, piece, true, sum);
+}
+
+// A moving end: d/dx of the integral up to it.
+void Reception::AddEnd(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
+                       const LightErrors* errors, int derivatives, const VisiblePiece& piece, bool is_end,
+                       Received& sum) {
+  const PieceEnd& end = is_end ? piece.end : piece.begin;
+  const double sign = is_end ? 1 : -1;
+  const Chart& chart = charts_[static_cast<std::size_t>(piece.element)];
+  const std::size_t channels = light.channels();
+  const PanelMesh::Range range = mesh.On(piece.element, piece.side);
+  // Of two panels that meet there, the one that is seen.
+  const double inner = is_end ? piece.begin.u : piece.end.u;
+  std::size_t i = range.first;
+  while (i + 1 < range.last && (inner > end.u ? mesh.panels()[i].high <= end.u : mesh.panels()[i].high < end.u)) ++i;
+  const Panel& panel = mesh.panels()[i];
+  double p[kLightCoefficients], slopes[kLightCoefficients];
+  LegendreWithSlopes(panel.Local(end.u), kLightCoefficients, p, slopes);
+
+  const EdgeErrors rounding = BoundErrors(end.edge, receiver.curvature, scene_.coordinate_error());
+  const double roundings[3] = {rounding.s, rounding.s_first, rounding.s_second};
+  double first = 0, second = 0, slope_factor = 0, speed = 1;
+  if (derivatives > 0 && !(end.own && end.edge.kind == Edge::Kind::kVertex)) {
+    const EdgeDerivatives moving = Derive(end.edge, receiver.curvature);
+    const Chart::Place place = chart.At(end.u);
+    speed = place.speed;
+    const double radius = OwnRadius(scene_, receiver, piece.element);
+    Edge foot = end.edge;
+    if (end.edge.kind == Edge::Kind::kHorizon && radius != 0) {
+      // The receiver's own circle runs on to the horizon, where the foot is the receiver itself.
+      second = 0.25 * end.edge.s * receiver.curvature * receiver.curvature;
+    } else {
+      if (end.own) {
+        foot.signed_radius = 0;
+      } else {
+        foot = VertexEdge(receiver, place.position);
+      }
+      const EdgeDerivatives fixed = Derive(foot, receiver.curvature);
+      if (!end.own) first = moving.s_first - fixed.s_first;
+      second = moving.s_second - fixed.s_second;
+    }
+    if (!end.own && first != 0) {
+      const double kernel = Kernel(receiver, place, piece.side, radius).Value();
+      if (kernel > 0) slope_factor = first * first / kernel * (inner > end.u ? -1 : 1) * (is_end ? 1 : -1);
+    }
+  }
+  const double stretch = 2 / (panel.high - panel.low) / speed;
+  for (std::size_t c = 0; c < channels; ++c) {
+    const double radiance = light.At(i, c, p);
+    for (int m = 0; m <= derivatives; ++m) sum.rounding[m].value[c] += std::abs(radiance) * roundings[m];
+    if (derivatives < 1) continue;
+    sum.value[1].value[c] += sign * radiance * first;
+    sum.rounding[1].value[c] += kRounding * std::abs(radiance * first);
+    if (derivatives < 2) continue;
+    const double radiance_slope = light.At(i, c, slopes) * stretch;
+    // Along theta.
+    sum.value[2].value[c] += sign * (radiance * second + slope_factor * radiance_slope);
+    sum.rounding[2].value[c] += kRounding * (std::abs(radiance * second) + std::abs(slope_factor * radiance_slope));
+  }
+  if (!errors || derivatives < 1) return;
+  for (std::size_t c = 0; c < channels; ++c) {
+    const std::size_t at = i * channels + c;
+    const double error = 1.25 * errors->size[at] + errors->value[at];
+    sum.error[1].value[c] += error * std::abs(first);
+    if (derivatives < 2) continue;
+    const double slope = 1.25 * errors->steep[at] * stretch + errors->slope[at];
+    sum.error[2].value[c] += error * std::abs(second) + slope * std::abs(slope_factor);
+  }
+}
+
+}  // namespace flatlight

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Irradiance from panels at one point, with its derivatives and what an error of the panels' light makes of it.
+#ifndef FLATLIGHT_CORE_PLANE_REFERENCE_RECEPTION_H_
+#define FLATLIGHT_CORE_PLANE_REFERENCE_RECEPTION_H_
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "core/plane/reference/outlook.h"
+#include "core/plane/reference/panel_light.h"
+#include "core/plane/reference/panel_mesh.h"
+#include "core/plane/reference/stretch.h"
+#include "core/scene/spectrum.h"
+
+namespace flatlight {
+
+// What is known of the error of a light.
+struct LightErrors {
+  PanelLight residual;         // By how much the light's own reflection differs from it.
+  std::vector<double> size;    // The largest residual, and
+  std::vector<double> steep;   // the largest slope of it, by the panel's place in [-1, 1].
+  std::vector<double> missed;  // What it may be off by itself, where it is not smooth.
+  // Bounds on how far the true light is from that reflection: by panel, then channel.
+  std::vector<double> value;
+  std::vector<double> slope;  // Of its derivative by arc length.
+};
+
+// Reflected irradiance and its derivatives along the receiver.
+struct Received {
+  Spectrum value[3];
+  Spectrum error[3];  // Bounds, where errors of the light are given.
+  // Bounds on rounding, of coordinates too, but for errors of the light.
+  Spectrum rounding[3];
+};
+
+// Holds working memory: one for each thread.
+class Reception {
+ public:
+  Reception(const RayCaster& caster, const std::vector<Chart>& charts)
+      : scene_(caster.scene()),
+        charts_(charts),
+        count_(kLightCoefficients + 2, kKernelDigits),
+        outlook_(caster, charts) {}
+
+  // `errors` may be null. `derivatives` 0, 1 or 2.
+  Received At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
+              int derivatives);
+  // What each panel's residual adds to the error of irradiance in the channel where it is largest, at the receiver of
+  // the last call: panels and values.
+  const std::vector<std::pair<std::size_t, double>>& shares() const { return shares_; }
+
+ private:
+  void AddPiece(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
+                int derivatives, const VisiblePiece& piece, Received& sum);
+  void AddEnd(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
+              int derivatives, const VisiblePiece& piece, bool is_end, Received& sum);
+
+  const Scene& scene_;
+  const std::vector<Chart>& charts_;
+  PointCount count_;
+  Outlook outlook_;
+  std::vector<std::pair<std::size_t, double>> shares_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_PLANE_REFERENCE_RECEPTION_H_

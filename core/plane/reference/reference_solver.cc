@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/plane/reference/reference_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/math/power.h"
+#include "core/plane/reference/light_events.h"
+#include "core/plane/reference/mesh_maker.h"
+#include "core/plane/reference/quadrature.h"
+#include "core/plane/reference/refinement.h"
+
+namespace flatlight {
+namespace {
+
+constexpr int kFirstSteps = 2;
+constexpr int kMostRounds = 24;
+constexpr std::size_t kMostMemory = std::size_t{1} << 30;
+// A round that brings the error down by less than this is idle.
+constexpr double kIdle = 0.8;
+constexpr int kMostIdleRounds = 3;
+// Of what errors are relative to, and of the probe's mean.
+constexpr double kFloor = 0.01;
+constexpr std::size_t kPiecesPerThread = 4;
+
+double Relative(double error, double size) {
+  return error == 0 ? 0 : size > 0 ? error / size : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+// Working memory of a thread.
+struct ReferenceSolver::Worker {
+  Worker(const RayCaster& caster, const std::vector<Chart>& charts, const ExactOptions& options)
+      : rows(caster, charts),
+        reception(caster, charts),
+        outlook(caster, charts),
+        exact(caster.scene(), caster.bvh(), options) {}
+
+  RowBuilder rows;
+  Reception reception;
+  Outlook outlook;
+  ExactSolver exact;
+  std::vector<double> shares;  // Largest of the points it gathered, by panel.
+};
+
+ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
+                                 const ReferenceOptions& options)
+    : scene_(std::move(scene)),
+      caster_(std::move(caster)),
+      options_(options),
+      channels_(static_cast<std::size_t>(options.channels)),
+      charts_(ChartsOf(caster_->scene())),
+      meetings_(Meetings(caster_->scene(), charts_)),
+      lights_(*caster_, {.derivatives = options.derivatives}) {
+  for (std::size_t p = 0; p < scene_->probes().size(); ++p) {
+    for (const Receiver& receiver : scene_->probes()[p].receivers) {
+      points_.push_back(&receiver);
+      probe_of_point_.push_back(p);
+    }
+  }
+  direct_.resize(points_.size());
+  const Scene& world = caster_->scene();
+  // Direct light alone needs no panels.
+  if (options_.max_bounces == 0u) {
+    options_.max_bounces.reset();
+    StartMesh(PanelMesh(world.elements().size(), {}));
+    return;
+  }
+  // What is reflected more often is nothing beside rounding.
+  if (options_.max_bounces && UnitPower(world.traits().max_reflectance, *options_.max_bounces) < 1e-20)
+    options_.max_bounces.reset();
+  StartMesh(SplitMeshAt(world, GradedMesh(world, meetings_, kFirstSteps), LightEvents(*caster_, charts_)));
+}
+
+ReferenceSolver::~ReferenceSolver() = default;
+
+std::unique_ptr<ReferenceSolver::Worker> ReferenceSolver::Take() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty()) {
+      std::unique_ptr<Worker> worker = std::move(idle_.back());
+      idle_.pop_back();
+      return worker;
+    }
+  }
+  return std::make_unique<Worker>(*caster_, charts_,
+                                  ExactOptions{.derivatives = options_.derivatives, .channels = options_.channels});
+}
+
+void ReferenceSolver::Return(std::unique_ptr<Worker> worker) {
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(worker));
+}
+
+void ReferenceSolver::StartMesh(PanelMesh mesh) {
+  Radiosity::Rows rows;
+  if (radiosity_) rows = radiosity_->TakeRows();
+  radiosity_.emplace(*caster_, charts_, std::move(mesh), channels_, options_.max_bounces, std::move(rows));
+  coming_.assign(points_.size(), {});
+  shares_.assign(panels(), 0.0);
+  split_.assign(panels(), 0);
+  places_.assign(panels(), {});
+  step_ = Step::kRows;
+  next_ = 0;
+  for (const auto& worker : idle_) worker->shares.assign(panels(), 0.0);
+}
+
+std::size_t ReferenceSolver::Count() const {
+  return IsWhole() ? 1 : step_ == Step::kPoints ? points_.size() : panels();
+}
+
+void ReferenceSolver::Advance(Executor& executor, int threads, const Cancellation& cancellation, const Clock& clock,
+                              Clock::Duration budget) {
+  const Clock::Time start = clock.Now();
+  while (state_ == State::kWorks && !cancellation.cancelled()) {
+    if (IsWhole()) {
+      DoWhole(executor, threads, cancellation);
+      if (cancellation.cancelled()) return;  // It is done again.
+      next_ = 1;
+    } else {
+      const std::size_t left = Count() - next_;
+      const std::size_t pieces = std::min(left, kPiecesPerThread * static_cast<std::size_t>(threads));
+      const std::size_t lanes = std::min(pieces, static_cast<std::size_t>(threads));
+      executor.ParallelFor(lanes, threads, [&](std::size_t lane) {
+        std::unique_ptr<Worker> worker = Take();
+        for (std::size_t i = lane; i < pieces; i += lanes) Work(*worker, next_ + i);
+        Return(std::move(worker));
+      });
+      next_ += pieces;
+    }
+    if (next_ == Count()) NextStep();
+    if (clock.Now() - start >= budget) return;
+  }
+}
+
+void ReferenceSolver::DoWhole(Executor& executor, int threads, const Cancellation& cancellation) {
+  const Radiosity::Loop loop = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
+    // Of some panels at once, for a panel is little work.
+    constexpr std::size_t kTogether = 8;
+    executor.ParallelFor((count + kTogether - 1) / kTogether, threads, [&](std::size_t i) {
+      for (std::size_t j = i * kTogether; j < std::min((i + 1) * kTogether, count); ++j) work(j);
+    });
+  };
+  const Radiosity::Stop stop = [&] { return cancellation.cancelled(); };
+  if (step_ == Step::kSolve) {
+    radiosity_->Solve(loop, stop);
+  } else {
+    radiosity_->Bound(loop, stop);
+  }
+}
+
+void ReferenceSolver::Work(Worker& worker, std::size_t i) {
+  switch (step_) {
+    case Step::kRows:
+      return radiosity_->BuildRows(worker.rows, i);
+    case Step::kCheck:
+      return radiosity_->Check(i);
+    case Step::kSpread:
+      return radiosity_->Spread(i);
+    case Step::kSlopes:
+      return FindSlopes(worker, i);
+    case Step::kPoints:
+      return Gather(worker, i);
+    case Step::kSplit: {
+      const Panel& panel = radiosity_->mesh().panels()[i];
+      const auto element = static_cast<std::size_t>(panel.element);
+      if (split_[i]) places_[i] = SplitPlaces(panel, charts_[element], meetings_[element], worker.outlook);
+      return;
+    }
+    case Step::kSolve:
+    case Step::kBound:
+      return;
+  }
+}
+
+void ReferenceSolver::FindSlopes(Worker& worker, std::size_t i) {
+  const Panel& panel = radiosity_->mesh().panels()[i];
+  const GaussRule& rule = Gauss(kLightCoefficients);
+  for (const std::size_t k : {std::size_t{0}, kLightCoefficients / 2, kLightCoefficients - 1}) {
+    const Receiver receiver =
+        charts_[static_cast<std::size_t>(panel.element)].ReceiverAt(panel.element, panel.At(rule.node[k]), panel.side);
+    const Received received =
+        worker.reception.At(receiver, radiosity_->mesh(), radiosity_->light(), &radiosity_->errors(), 1);
+    for (std::size_t c = 0; c < channels_; ++c) {
+      double& slope = radiosity_->errors().slope[i * channels_ + c];
+      slope = std::max(slope, received.error[1].value[c] + received.rounding[1].value[c]);
+    }
+  }
+}
+
+void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
+  const Receiver& receiver = *points_[point];
+  if (rounds_ == 0) {
+    direct_[point] = worker.exact.Evaluate(receiver);
+    lights_.Add(receiver, direct_[point]);
+  }
+  worker.shares.resize(panels(), 0.0);
+  ExactValue value = direct_[point];
+  const Received received = worker.reception.At(receiver, radiosity_->mesh(), radiosity_->light(),
+                                                &radiosity_->errors(), options_.derivatives);
+  Spectrum* const values[3] = {&value.irradiance, &value.gradient, &value.hessian};
+  Spectrum* const errors[3] = {&value.irradiance_error, &value.gradient_error, &value.hessian_error};
+  for (int m = 0; m <= options_.derivatives; ++m) {
+    for (int c = 0; c < kMaxChannels; ++c) {
+      const int from = c < options_.channels ? c : 0;
+      (*values[m])[c] += received.value[m][from];
+      (*errors[m])[c] += received.error[m][from] + received.rounding[m][from];
+    }
+  }
+  // Light is not negative, even where its error is larger.
+  double size = 0;
+  for (int c = 0; c < kMaxChannels; ++c) {
+    value.irradiance[c] = std::max(value.irradiance[c], 0.0);
+    size = std::max({size, value.irradiance[c], value.irradiance_error[c]});
+  }
+  for (const auto& [panel, share] : worker.reception.shares()) {
+    double& most = worker.shares[panel];
+    most = std::max(most, Relative(share, options_.target_error * size));
+  }
+  coming_[point] = value;
+}
+
+void ReferenceSolver::NextStep() {
+  next_ = 0;
+  if (step_ == Step::kPoints) return EndPoints();
+  if (step_ == Step::kSplit) return StartMesh(SplitMesh(caster_->scene(), radiosity_->mesh(), places_));
+  step_ = static_cast<Step>(static_cast<int>(step_) + 1);
+  if (step_ == Step::kSlopes && options_.derivatives < 2) step_ = Step::kPoints;
+}
+
+void ReferenceSolver::EndPoints() {
+  std::vector<Spectrum> means(scene_->probes().size());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    Spectrum& mean = means[probe_of_point_[i]];
+    const auto count = static_cast<double>(scene_->probes()[probe_of_point_[i]].receivers.size());
+    mean = mean + (1 / count) * coming_[i].irradiance;
+  }
+  const double before = relative_error_;
+  relative_error_ = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    for (int c = 0; c < options_.channels; ++c) {
+      const double size = std::max(coming_[i].irradiance[c], kFloor * means[probe_of_point_[i]][c]);
+      relative_error_ = std::max(relative_error_, Relative(coming_[i].irradiance_error[c], size));
+    }
+  }
+  values_.swap(coming_);
+  if (rounds_++ == 0) first_relative_error_ = relative_error_;
+  if (relative_error_ <= options_.target_error) {
+    state_ = State::kReached;
+    return;
+  }
+  idle_rounds_ = rounds_ > 1 && relative_error_ > kIdle * before ? idle_rounds_ + 1 : 0;
+  if (rounds_ == kMostRounds || idle_rounds_ == kMostIdleRounds) {
+    state_ = State::kExhausted;
+    return;
+  }
+  // Beside what panels add straight away there is what they add by way of others.
+  std::vector<double> influence = radiosity_->Influence();
+  double all = 0;
+  for (const double share : influence) all += share;
+  for (std::size_t i = 0; i < panels(); ++i) {
+    for (const auto& worker : idle_)
+      shares_[i] = std::max(shares_[i], i < worker->shares.size() ? worker->shares[i] : 0);
+    if (all > 0) shares_[i] += influence[i] / all * relative_error_ / options_.target_error;
+  }
+  split_ = PanelsToSplit(shares_);
+  const auto splits = static_cast<double>(std::count(split_.begin(), split_.end(), 1));
+  const double growth = 1 + splits / static_cast<double>(panels());
+  if (splits == 0 || growth * growth * static_cast<double>(radiosity_->memory()) > kMostMemory) {
+    state_ = State::kExhausted;
+    return;
+  }
+  step_ = Step::kSplit;
+}
+
+}  // namespace flatlight

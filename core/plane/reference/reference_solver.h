@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_PLANE_REFERENCE_REFERENCE_SOLVER_H_
+#define FLATLIGHT_CORE_PLANE_REFERENCE_REFERENCE_SOLVER_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "core/execution/cancellation.h"
+#include "core/execution/clock.h"
+#include "core/execution/executor.h"
+#include "core/plane/exact/exact.h"
+#include "core/plane/exact/light_solver.h"
+#include "core/plane/ray_caster.h"
+#include "core/plane/reference/radiosity.h"
+
+namespace flatlight {
+
+struct ReferenceOptions {
+  int derivatives = 2;
+  int channels = kMaxChannels;  // The first ones are computed, the others get the first one's values.
+  std::optional<std::uint32_t> max_bounces;
+  // Refines until the bound on every point's error is at most so many times max(irradiance, 1 % of its probe's mean).
+  double target_error = 1e-6;
+};
+
+// Light of all bounces at the points of a scene's probes: direct light in closed form, what curves reflect from panels
+// that are split until the bound on the error is small enough. Works in rounds, each with a finer mesh.
+class ReferenceSolver {
+ public:
+  // The caster's scene has the world of `scene`. Requires Lambertian reflection alone.
+  ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
+                  const ReferenceOptions& options);
+  ~ReferenceSolver();
+
+  // Works for about `budget`, until done or cancelled. For equal rounds done the values have equal bits.
+  void Advance(Executor& executor, int threads, const Cancellation& cancellation, const Clock& clock,
+               Clock::Duration budget);
+  enum class State : std::uint8_t {
+    kWorks,
+    kReached,   // The bounds are as small as wanted.
+    kExhausted  // Rounding, or the memory that is allowed, lets them become no smaller.
+  };
+  State state() const { return state_; }
+
+  // By point, after the last round that was finished; empty before the first was.
+  const std::vector<ExactValue>& values() const { return values_; }
+  // The largest bound in units of max(irradiance, 1 % of its probe's mean).
+  double relative_error() const { return relative_error_; }
+  double first_relative_error() const { return first_relative_error_; }
+  int rounds() const { return rounds_; }
+  std::size_t panels() const { return radiosity_->mesh().size(); }
+
+ private:
+  struct Worker;
+  enum class Step : std::uint8_t { kRows, kSolve, kCheck, kSpread, kBound, kSlopes, kPoints, kSplit };
+
+  std::unique_ptr<Worker> Take();
+  void Return(std::unique_ptr<Worker> worker);
+  // Of the step: pieces of work, and one of them.
+  std::size_t Count() const;
+  void Work(Worker& worker, std::size_t i);
+  void DoWhole(Executor& executor, int threads, const Cancellation& cancellation);
+  void FindSlopes(Worker& worker, std::size_t panel);
+  void Gather(Worker& worker, std::size_t point);
+  void NextStep();
+  void EndPoints();
+  void StartMesh(PanelMesh mesh);
+  bool IsWhole() const { return step_ == Step::kSolve || step_ == Step::kBound; }
+
+  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const RayCaster> caster_;
+  ReferenceOptions options_;
+  std::size_t channels_;
+  std::vector<Chart> charts_;
+  std::vector<std::vector<double>> meetings_;
+  LightSolver lights_;
+  std::vector<const Receiver*> points_;
+  std::vector<std::size_t> probe_of_point_;
+  std::vector<ExactValue> direct_;  // By point.
+
+  std::optional<Radiosity> radiosity_;
+  Step step_ = Step::kRows;
+  std::size_t next_ = 0;            // In the step.
+  std::vector<ExactValue> coming_;  // By point, of this round.
+  std::vector<double> shares_;      // By panel: the largest share of the error that is allowed.
+  std::vector<char> split_;
+  std::vector<std::vector<double>> places_;
+
+  State state_ = State::kWorks;
+  std::vector<ExactValue> values_;
+  double relative_error_ = 0, first_relative_error_ = 0;
+  int rounds_ = 0;
+  int idle_rounds_ = 0;  // That brought little.
+
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Worker>> idle_;  // Guarded by mutex_.
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_PLANE_REFERENCE_REFERENCE_SOLVER_H_

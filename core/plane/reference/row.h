@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a point receives from each panel of a mesh: a row of the radiosity matrix.
+#ifndef FLATLIGHT_CORE_PLANE_REFERENCE_ROW_H_
+#define FLATLIGHT_CORE_PLANE_REFERENCE_ROW_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/plane/reference/outlook.h"
+#include "core/plane/reference/panel_light.h"
+#include "core/plane/reference/panel_mesh.h"
+#include "core/plane/reference/stretch.h"
+#include "core/scene/spectrum.h"
+
+namespace flatlight {
+
+struct Row {
+  Spectrum direct;         // Irradiance straight from emitters, lights and the environment.
+  double coordinates = 0;  // What it is off by, as coordinates are, for light of radiance 1.
+  std::vector<std::uint32_t> panels;
+  // Irradiance from each Legendre polynomial on each of them: kLightCoefficients, and the rest up to
+  // kResidualCoefficients, of which few digits count.
+  std::vector<double> low;
+  std::vector<float> high;
+
+  // Irradiance from a polynomial of kLightCoefficients on the p-th panel.
+  double TimesLight(std::size_t p, const double* coefficients) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < kLightCoefficients; ++k) sum += low[p * kLightCoefficients + k] * coefficients[k];
+    return sum;
+  }
+  // The same of kResidualCoefficients.
+  double Times(std::size_t p, const double* coefficients) const {
+    double sum = TimesLight(p, coefficients);
+    constexpr std::size_t kRest = kResidualCoefficients - kLightCoefficients;
+    for (std::size_t k = 0; k < kRest; ++k)
+      sum += static_cast<double>(high[p * kRest + k]) * coefficients[kLightCoefficients + k];
+    return sum;
+  }
+};
+
+class RowBuilder {
+ public:
+  RowBuilder(const RayCaster& caster, const std::vector<Chart>& charts)
+      : scene_(caster.scene()),
+        charts_(charts),
+        count_(kLightCoefficients - 1, kKernelDigits),
+        outlook_(caster, charts) {}
+
+  // `before`, if not null: the row of the same receiver with the mesh that this one was made of. What is in it already
+  // is not computed again. Without `high` the row has no high coefficients.
+  void Build(const PanelMesh& mesh, const Receiver& receiver, bool high, const Row* before, Row& row);
+
+ private:
+  void AddPiece(const PanelMesh& mesh, const Receiver& receiver, const VisiblePiece& piece, bool high, Row& row);
+  // Copies the panel's entry, if there was one.
+  bool Copy(const Panel& panel, bool high, Row& row);
+
+  const Scene& scene_;
+  const std::vector<Chart>& charts_;
+  PointCount count_;
+  Outlook outlook_;
+  const Row* before_ = nullptr;
+  std::size_t next_before_ = 0;  // Entries come in one order in both rows.
+};
+
+// Whether a receiver lies on the circle of an element, inside; then that circle's radius, else 0.
+double OwnRadius(const Scene& scene, const Receiver& receiver, ElementId element);
+
+// The difference of the sines of the directions to two places of an element.
+double SineBetween(const Chart& chart, const Receiver& receiver, double low, double high);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_PLANE_REFERENCE_ROW_H_

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/reference_rendering.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "core/render/probe_points.h"
+#include "core/render/skips.h"
+#include "core/render/world_units.h"
+
+namespace flatlight {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+// Until a first round tells how far there is to go.
+constexpr double kFirstRound = 0.05;
+
+}  // namespace
+
+ReferenceRendering::ReferenceRendering(std::shared_ptr<const Scene> scene,
+                                       const std::shared_ptr<const RayCaster>& caster, const Plan& plan)
+    : scene_(std::move(scene)),
+      derivatives_(static_cast<int>(plan.settings.derivatives.value_or(Derivatives::kNone))),
+      target_error_(*plan.settings.target_error),
+      time_limit_(plan.settings.time_limit),
+      max_threads_(plan.MaxThreads()) {
+  if (plan.Takes(skip::kEmission)) {
+    end_reason_ = EndReason::kTargetReached;
+    return;
+  }
+  ReferenceOptions options;
+  options.derivatives = derivatives_;
+  options.channels = plan.Takes(skip::kColour) ? 1 : kMaxChannels;
+  options.max_bounces = plan.settings.max_bounces;
+  options.target_error = target_error_;
+  solver_.emplace(scene_, caster, options);
+}
+
+void ReferenceRendering::Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
+                                 Clock::Duration budget) {
+  if (done()) return;
+  const int threads = std::max(std::min(max_threads_, executor.threads()), 1);
+  const Clock::Time now = clock.Now();
+  if (!start_) start_ = now;
+  if (time_limit_) {
+    // The first round is there whatever it takes.
+    const auto left = std::chrono::duration_cast<Clock::Duration>(
+        std::max(Seconds(0), Seconds(*time_limit_) - Seconds(now - *start_)));
+    budget = std::min(budget, left);
+  }
+  solver_->Advance(executor, threads, cancellation, clock, budget);
+  if (solver_->state() == ReferenceSolver::State::kReached) {
+    end_reason_ = EndReason::kTargetReached;
+  } else if (solver_->state() == ReferenceSolver::State::kExhausted) {
+    end_reason_ = EndReason::kAccuracyLimit;
+  } else if (time_limit_ && solver_->rounds() > 0 && Seconds(clock.Now() - *start_).count() >= *time_limit_) {
+    end_reason_ = EndReason::kTimeLimit;
+  }
+}
+
+RenderProgress ReferenceRendering::Progress() const {
+  RenderProgress progress;
+  progress.fraction = done() ? 1 : 0;
+  if (!solver_ || solver_->rounds() == 0) return progress;
+  progress.relative_error = solver_->relative_error();
+  if (done()) return progress;
+  const double way = std::log(solver_->first_relative_error() / target_error_);
+  const double left = std::log(solver_->relative_error() / target_error_);
+  progress.fraction = way > 0 && std::isfinite(way) && std::isfinite(left)
+                          ? std::clamp(1 - left / way, kFirstRound, 0.99)
+                          : kFirstRound;
+  return progress;
+}
+
+std::shared_ptr<const Field> ReferenceRendering::Snapshot() const {
+  auto field = std::make_shared<Field>();
+  field->probes.resize(scene_->probes().size());
+  if (solver_ && solver_->rounds() == 0) return field;
+  const auto channels = static_cast<std::size_t>(scene_->channels());
+  const WorldUnits units(scene_->frame());
+  double bound = 0;
+  std::size_t i = 0;
+  for (std::size_t p = 0; p < scene_->probes().size(); ++p) {
+    ProbeField& values = field->probes[p];
+    for (const std::size_t end = i + scene_->probes()[p].receivers.size(); i < end; ++i) {
+      const ExactValue value = solver_ ? solver_->values()[i] : ExactValue{};
+      for (std::size_t c = 0; c < channels; ++c) {
+        values.irradiance.push_back(units.irradiance * value.irradiance.value[c]);
+        values.irradiance_error.push_back(units.irradiance * value.irradiance_error.value[c]);
+        bound = std::max(bound, values.irradiance_error.back());
+        if (derivatives_ < 1) continue;
+        values.gradient.push_back(units.gradient * value.gradient.value[c]);
+        values.gradient_error.push_back(units.gradient * value.gradient_error.value[c]);
+        if (derivatives_ < 2) continue;
+        values.hessian.push_back(units.hessian * value.hessian.value[c]);
+        values.hessian_error.push_back(units.hessian * value.hessian_error.value[c]);
+      }
+    }
+  }
+  field->error_bound = bound;
+  return field;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_RENDER_REFERENCE_RENDERING_H_
+#define FLATLIGHT_CORE_RENDER_REFERENCE_RENDERING_H_
+
+#include <memory>
+#include <optional>
+
+#include "core/plane/ray_caster.h"
+#include "core/plane/reference/reference_solver.h"
+#include "core/render/rendering.h"
+
+namespace flatlight {
+
+// Light of all bounces with bounds on its error, round after round. The field has the values of the last round.
+class ReferenceRendering final : public Rendering {
+ public:
+  // The caster's scene has the world of `scene`; it may be null where nothing emits.
+  ReferenceRendering(std::shared_ptr<const Scene> scene, const std::shared_ptr<const RayCaster>& caster,
+                     const Plan& plan);
+
+  void Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
+               Clock::Duration budget) override;
+  bool done() const override { return end_reason_.has_value(); }
+  EndReason end_reason() const override { return *end_reason_; }
+  RenderProgress Progress() const override;
+  std::shared_ptr<const Field> Snapshot() const override;
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  int derivatives_;
+  double target_error_;
+  std::optional<double> time_limit_;  // s
+  int max_threads_;
+  std::optional<ReferenceSolver> solver_;  // Unless all is dark.
+  std::optional<Clock::Time> start_;
+  std::optional<EndReason> end_reason_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_RENDER_REFERENCE_RENDERING_H_

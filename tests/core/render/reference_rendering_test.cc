@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// The method `reference`: what it agrees with, how it ends, what it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/execution/thread_pool.h"
+#include "core/render/plan.h"
+#include "core/render/rendering.h"
+#include "tests/support/transport/honest_errors.h"
+#include "tests/support/transport/render.h"
+#include "tests/support/transport/scene_maker.h"
+
+namespace flatlight {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Settings Reference(double target) {
+  Settings settings;
+  settings.method = Method::kReference;
+  settings.target_error = target;
+  return settings;
+}
+
+// Everything at once: a room that is open to the sky, lamps, blockers, lights without a surface, in colour.
+SceneMaker OpenRoom() {
+  SceneMaker maker;
+  maker.Segment("floor", {0, 0}, {4, 0}, {.reflectance = {0.5, 0.6, 0.7}});
+  maker.Segment("left", {0, 3}, {0, 0}, {.reflectance = {0.2, 0.8, 0.3}});
+  maker.Segment("lamp", {2.5, 2.9}, {1.5, 2.9}, {.reflectance = {0.3}, .radiance = {5, 4, 3}, .two_sided = true});
+  maker.Arc("disc", {{2.8, 0.8}, 0.4, 0, -6.283185307179586}, {.reflectance = {0.6}});
+  maker.Segment("shelf", {1, 1.5}, {2, 1.6}, {.reflectance = {0.9, 0.4, 0.4}});
+  maker.Environment({0.5, 0.6, 0.9});
+  maker.Light(PointLightDescription{{1.2, 0.3}, {1, 2, 3}});
+  maker.Light(SpotLightDescription{{3.5, 2.5}, {-1, -1}, {2, 1, 3}, 0.1, 0.7});
+  maker.Light(DirectionalLightDescription{{1, -2}, {1, 1, 1}});
+  for (const char* curve : {"floor", "left", "disc", "shelf"}) maker.Probe(curve, 16);
+  return maker;
+}
+
+TEST(ReferenceRenderingTest, PathTracingAgrees) {
+  for (const bool open : {false, true}) {
+    for (const auto bounces :
+         {std::optional<std::uint32_t>(), std::optional<std::uint32_t>(1), std::optional<std::uint32_t>(3)}) {
+      const auto scene = open ? OpenRoom().Build() : FurnishedRoom(false, 16).Build();
+      Settings settings = Reference(1e-4);
+      settings.max_bounces = bounces;
+      const Ended reference = Render(scene, settings);
+      EXPECT_EQ(reference.reason, EndReason::kTargetReached);
+      Settings sampled = Sampled(1024, 7);
+      sampled.max_bounces = bounces;
+      const Ended traced = Render(scene, sampled);
+      HonestErrors errors, wrong;
+      for (std::size_t p = 0; p < reference.field->probes.size(); ++p) {
+        const ProbeField &r = reference.field->probes[p], &t = traced.field->probes[p];
+        // The channels of a point share their paths.
+        for (std::size_t i = 1; i < r.irradiance.size(); i += 3) {
+          errors.Add(t.irradiance[i], r.irradiance[i], t.standard_error[i]);
+          wrong.Add(t.irradiance[i], 1.02 * r.irradiance[i], t.standard_error[i]);
+        }
+      }
+      EXPECT_EQ(errors.count(), 64u);
+      EXPECT_TRUE(errors.Unbiased()) << errors.MeanZ() << ' ' << open;
+      EXPECT_LT(errors.MeanSquareZ(), 2) << open;
+      EXPECT_FALSE(wrong.Unbiased() && wrong.MeanSquareZ() < 2);
+    }
+  }
+}
+
+TEST(ReferenceRenderingTest, WithoutBouncesItIsExact) {
+  const auto scene = OpenRoom().Build();
+  Settings settings = Reference(1e-6);
+  settings.max_bounces = 0;
+  const Ended reference = Render(scene, settings);
+  settings = {};
+  settings.method = Method::kExact;
+  settings.max_bounces = 0;
+  const Ended exact = Render(scene, settings);
+  for (std::size_t p = 0; p < exact.field->probes.size(); ++p) {
+    EXPECT_EQ(reference.field->probes[p].irradiance, exact.field->probes[p].irradiance);
+    EXPECT_EQ(reference.field->probes[p].gradient, exact.field->probes[p].gradient);
+    EXPECT_EQ(reference.field->probes[p].hessian, exact.field->probes[p].hessian);
+  }
+}
+
+// A grey world computes one channel, in colour or not.
+TEST(ReferenceRenderingTest, SkipsColourWhereThereIsNone) {
+  Settings settings = Reference(1e-3);
+  const auto scene = FurnishedRoom(true, 4).Build();
+  const Ended grey = Render(scene, settings);
+  settings.no_skip = {"colour"};
+  EXPECT_EQ(HashOf(*Render(scene, settings).field), HashOf(*grey.field));
+}
+
+TEST(ReferenceRenderingTest, BitsDependOnNothingButTheRoundsDone) {
+  const auto scene = FurnishedRoom(false, 5).Build();
+  const Ended whole = Render(scene, Reference(1e-3));
+  for (const int threads : {1, 2, 5}) {
+    for (const Clock::Duration budget : {Clock::Duration(0), kForever}) {
+      const Ended other = Render(scene, Reference(1e-3), threads, budget);
+      EXPECT_EQ(HashOf(*other.field), HashOf(*whole.field)) << threads;
+    }
+  }
+}
+
+TEST(ReferenceRenderingTest, GoesOnAfterItWasCancelled) {
+  const auto scene = FurnishedRoom(true, 5).Build();
+  const auto rendering = StartRendering(scene, PlanFor(*scene, Reference(1e-3)));
+  InlineExecutor executor;
+  const SteadyClock clock;
+  Cancellation cancelled;
+  cancelled.Cancel();
+  const Cancellation never;
+  for (int i = 0; i < 2000 && !rendering->done(); ++i) {
+    rendering->Advance(executor, cancelled, clock, kForever);
+    EXPECT_FALSE(rendering->done());
+    rendering->Advance(executor, never, clock, Clock::Duration(0));
+  }
+  ASSERT_TRUE(rendering->done());
+  EXPECT_EQ(HashOf(*rendering->Snapshot()), HashOf(*Render(scene, Reference(1e-3)).field));
+}
+
+TEST(ReferenceRenderingTest, StatesABoundForEachValue) {
+  const auto scene = FurnishedRoom(false, 5).Build();
+  const Ended ended = Render(scene, Reference(1e-3));
+  double largest = 0;
+  for (const ProbeField& probe : ended.field->probes) {
+    ASSERT_EQ(probe.irradiance_error.size(), 15u);
+    EXPECT_TRUE(probe.standard_error.empty());
+    for (const double bound : probe.irradiance_error) largest = std::max(largest, bound);
+    for (const double bound : probe.gradient_error) EXPECT_GT(bound, 0);
+    for (const double bound : probe.hessian_error) EXPECT_GT(bound, 0);
+  }
+  EXPECT_EQ(ended.field->error_bound, largest);
+}
+
+// The result of the first round stands, however little time there is; and it says that it is no better.
+TEST(ReferenceRenderingTest, EndsAtTheTimeLimit) {
+  const auto scene = FurnishedRoom(true, 5).Build();
+  Settings settings = Reference(1e-9);
+  settings.time_limit = 1e-9;
+  const Ended ended = Render(scene, settings);
+  EXPECT_EQ(ended.reason, EndReason::kTimeLimit);
+  EXPECT_GT(*ended.field->error_bound, 1e-6);
+  EXPECT_EQ(ended.field->probes[0].irradiance.size(), 5u);
+}
+
+TEST(ReferenceRenderingTest, TheDarkNeedsNoWork) {
+  const Ended ended = Render(SquareRoom({.reflectance = {0.5}}, 2).Build(), Reference(1e-6));
+  EXPECT_EQ(ended.field->probes[0].irradiance, std::vector<double>(2, 0.0));
+  EXPECT_EQ(ended.field->error_bound, 0);
+}
+
+std::vector<std::string> Mistakes(const Scene& scene, const Settings& settings) {
+  Diagnostics diagnostics;
+  const bool planned = MakePlan(scene, settings, diagnostics).has_value();
+  EXPECT_EQ(planned, diagnostics.count() == 0);
+  std::vector<std::string> messages;
+  for (const Diagnostic& d : diagnostics.kept()) messages.push_back(d.path + ": " + d.message);
+  return messages;
+}
+
+TEST(ReferenceRenderingTest, RefusesWhatItCannotDo) {
+  SceneMaker maker = SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 1);
+  maker.Segment("glass", {0, 0}, {0.5, 0}, {.material = MirrorDescription{{0.9}}});
+  const auto scene = maker.Build();
+  EXPECT_THAT(Mistakes(*scene, Reference(1e-3)),
+              ElementsAre("settings.method: reference needs a scene that reflects by lambertian materials alone, and "
+                          "curve \"glass\" has another: use path-tracing"));
+  Settings direct = Reference(1e-3);
+  direct.max_bounces = 0;
+  EXPECT_THAT(Mistakes(*scene, direct), ElementsAre());
+  Settings samples = Reference(1e-3);
+  samples.samples = 16;
+  samples.seed = 3;
+  EXPECT_THAT(Mistakes(*FurnishedRoom(true, 1).Build(), samples),
+              ElementsAre(HasSubstr("settings.samples: does not apply"), HasSubstr("settings.seed: does not apply")));
+  SceneMaker many = SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 1);
+  for (int i = 0; i < 2045; ++i) {
+    const double x = -0.9 + 1.8 * i / 2045;
+    many.Segment("blade" + std::to_string(i), {x, -0.5}, {x, 0.5});
+  }
+  EXPECT_THAT(
+      Mistakes(*many.Build(), Reference(1e-3)),
+      ElementsAre("settings.method: reference does scenes of up to 2048 straight and arced pieces, and this one "
+                  "has 2049: use path-tracing"));
+  const auto mirror_room = SquareRoom({.reflectance = {1}, .radiance = {1}}, 1).Build();
+  EXPECT_THAT(Mistakes(*mirror_room, Reference(1e-3)), ElementsAre(HasSubstr("light never fades")));
+}
+
+TEST(ReferenceRenderingTest, ThePlanSaysWhatComes) {
+  Settings settings;
+  settings.method = Method::kReference;
+  const Plan plan = PlanFor(*FurnishedRoom(true, 4).Build(), settings);
+  EXPECT_EQ(plan.settings.target_error, 1e-6);
+  EXPECT_EQ(plan.settings.derivatives, Derivatives::kHessian);
+  EXPECT_EQ(plan.summary,
+            "Reference of all bounces with gradient and Hessian at 16 points, until the error is 0.0001 %.");
+}
+
+}  // namespace
+}  // namespace flatlight
