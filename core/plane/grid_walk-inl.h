@@ -32,38 +32,45 @@ struct GridPlace {
 
 class GridWalk {
  public:
-  HWY_INLINE GridWalk(const Line& line)
+  GridWalk() = default;
+  HWY_INLINE explicit GridWalk(const Line& line)
       : origin_(line.origin), direction_(line.direction), inverse_{Inverse(direction_.x), Inverse(direction_.y)} {}
 
-  // Calls meet(cell) for cells with curves from near to far, while what it answers, and `end`, lies beyond.
-  template <typename Meet>
-  HWY_INLINE void Run(const CurveGrid& grid, const double& end, const Meet& meet) {
+  // The place where the walk to `end` begins; false if the grid is not on the way.
+  HWY_INLINE bool Begin(const CurveGrid& grid, double end, GridPlace& at) const {
+    return Enter(grid.frames()[0], 0, std::numeric_limits<double>::infinity(), end, at);
+  }
+
+  // Calls search.Meet(world, cell) for cells with curves from near to far, until it answers true or search.end(),
+  // which may come nearer, is reached. Not by a function object: GCC would not inline it, and the search would be in
+  // memory, not in registers.
+  template <typename World, typename Search>
+  HWY_INLINE void Run(const World& world, GridPlace at, Search& search) const {
+    const CurveGrid& grid = world.grid;
     const GridCell* const cells = grid.cells().data();
-    GridPlace at;
     GridPlace around[CurveGrid::kMostLevels];
     std::size_t level = 0;
-    if (!Enter(grid.frames()[0], 0, std::numeric_limits<double>::infinity(), end, at)) return;
     while (true) {
       const GridCell cell = cells[at.cell];
       double leave = std::min(at.to_column, at.to_row);
       if (cell.kind <= GridCell::kCurves) {
-        if (meet(cell)) return;
+        if (search.Meet(world, cell)) return;
       } else if (cell.kind == GridCell::kEmpty) {
         if (cell.count > 0) leave = Skip(cell.count, at);
       } else if (cell.kind == GridCell::kGrid) {
         const double begin = std::max({0.0, at.to_column - at.column_length, at.to_row - at.row_length});
         around[level++] = at;
-        if (Enter(grid.frames()[cell.first], begin, std::min(leave, at.limit), end, at)) continue;
+        if (Enter(grid.frames()[cell.first], begin, std::min(leave, at.limit), search.end(), at)) continue;
         at = around[--level];
       } else {
         leave = at.limit;
       }
       while (HWY_UNLIKELY(leave >= at.limit)) {
-        if (level == 0 || end <= at.limit) return;
+        if (level == 0 || search.end() <= at.limit) return;
         at = around[--level];
         leave = std::min(at.to_column, at.to_row);
       }
-      if (end <= leave) return;
+      if (search.end() <= leave) return;
       Step(at);
     }
   }

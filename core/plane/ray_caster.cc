@@ -14,6 +14,8 @@ namespace flatlight {
 namespace {
 
 constexpr std::size_t kBatch = 64;
+// Smaller grids stay in the near caches: there, preparing many rays at once costs more than it saves.
+constexpr std::size_t kWorthPreparing = 2048;  // Blocks.
 
 }  // namespace
 
@@ -73,6 +75,10 @@ std::optional<Hit> RayCaster::ClosestHit(const SurfacePoint& from, Vector2 direc
 
 void RayCaster::ClosestHits(std::span<const Ray> rays, std::span<std::optional<Hit>> hits) const {
   FLATLIGHT_DCHECK(rays.size() == hits.size());
+  if (grid_.blocks().size() < kWorthPreparing) {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = ClosestHit(rays[i].from, rays[i].direction);
+    return;
+  }
   std::array<WalkRay, kBatch> walk_rays;
   std::array<NearestCrossing, kBatch> nearest;
   for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {
@@ -93,6 +99,10 @@ bool RayCaster::Visible(const SurfacePoint& from, const SurfacePoint& to) const 
 void RayCaster::Visible(std::span<const SurfacePoint> from, std::span<const SurfacePoint> to,
                         std::span<bool> visible) const {
   FLATLIGHT_DCHECK(from.size() == to.size() && from.size() == visible.size());
+  if (grid_.blocks().size() < kWorthPreparing) {
+    for (std::size_t i = 0; i < from.size(); ++i) visible[i] = Visible(from[i], to[i]);
+    return;
+  }
   std::array<RayEnd, kBatch> begins, ends;
   for (std::size_t first = 0; first < from.size(); first += kBatch) {
     const std::size_t count = std::min(kBatch, from.size() - first);

@@ -7,6 +7,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/plane/ray_walk.cc"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 
 #include "core/plane/block_lanes-inl.h"
@@ -29,6 +30,7 @@ struct World {
 // The first crossing of a ray.
 struct NearestSearch {
   using Result = NearestCrossing;
+  using Input = WalkRay;
   WalkRay ray;
   Line line{{}, {}, 0};
   NearestCrossing result;
@@ -37,7 +39,8 @@ struct NearestSearch {
   HWY_INLINE NearestSearch(const World& world, const WalkRay& along)
       : ray(along), line(along.from.position, along.direction, world.scene.touch_distance()) {}
 
-  const double& end() const { return result.t; }
+  const WalkRay& input() const { return ray; }
+  double end() const { return result.t; }
 
   // Meets the elements of a cell; false, as a later one may be nearer.
   HWY_INLINE bool Meet(const World& world, const GridCell& cell) {
@@ -79,7 +82,7 @@ struct NearestSearch {
     return false;
   }
 
-  bool MeetElement(const World& world, std::uint32_t index) {
+  HWY_INLINE bool MeetElement(const World& world, std::uint32_t index) {
     const Element& element = world.scene.elements()[index];
     const double touch = world.scene.touch_distance();
     const bool own = element.carrier == ray.from.carrier;
@@ -108,11 +111,11 @@ struct PlacePair {
 // Something between two places.
 struct BlockerSearch {
   using Result = bool;
+  using Input = PlacePair;
   WalkRay ray;
   RayEnd to;
   Line line{{}, {}, 0};
   bool result = false;
-  double length = 1;
 
   BlockerSearch() = default;
   HWY_INLINE BlockerSearch(const World& world, const PlacePair& places)
@@ -120,7 +123,8 @@ struct BlockerSearch {
         to(places.to),
         line(places.from.position, ray.direction, world.scene.touch_distance()) {}
 
-  const double& end() const { return length; }
+  PlacePair input() const { return {ray.from, to}; }
+  double end() const { return 1; }
 
   // Meets the elements of a cell; true if one blocks.
   HWY_INLINE bool Meet(const World& world, const GridCell& cell) {
@@ -148,7 +152,7 @@ struct BlockerSearch {
     return false;
   }
 
-  bool MeetElement(const World& world, std::uint32_t index) {
+  HWY_INLINE bool MeetElement(const World& world, std::uint32_t index) {
     const Element& element = world.scene.elements()[index];
     const bool own = element.carrier == ray.from.carrier, theirs = element.carrier == to.carrier;
     const double touch = world.scene.touch_distance();
@@ -172,15 +176,17 @@ struct BlockerSearch {
 
 // Whether an element passes through a place.
 struct TouchSearch {
+  using Result = bool;
+  using Input = RayEnd;
   RayEnd place;
   Line line;
   bool result = false;
-  double length = 0;
 
   TouchSearch(const World& world, const RayEnd& at)
       : place(at), line(at.position, {1, 1}, world.scene.touch_distance()) {}
 
-  const double& end() const { return length; }
+  const RayEnd& input() const { return place; }
+  double end() const { return 0; }
 
   HWY_INLINE bool Meet(const World& world, const GridCell& cell) {
     const CurveBlock* const blocks = world.grid.blocks().data();
@@ -193,7 +199,7 @@ struct TouchSearch {
     return false;
   }
 
-  bool MeetElement(const World& world, std::uint32_t index) {
+  HWY_INLINE bool MeetElement(const World& world, std::uint32_t index) {
     const Element& element = world.scene.elements()[index];
     return result =
                element.carrier != place.carrier && DistanceTo(element, place.position) <= world.scene.touch_distance();
@@ -206,58 +212,107 @@ HWY_INLINE bool HasDirection(Vector2 direction) {
   return size > 0 && size < std::numeric_limits<double>::infinity();
 }
 
-// Where the places of a ray round by more than the cells' margin allows, everything is looked at.
+// Where the places of a ray round by more than the cells' margin allows, everything is looked at. Begins anew: a search
+// that is handed to what is not inlined would be in memory, not in registers.
 template <typename Search>
-void MeetAll(const World& world, Search& search) {
+HWY_NOINLINE typename Search::Result MeetAll(const World& world, typename Search::Input input) {
+  Search search(world, input);
   for (std::uint32_t index = 0; index < world.scene.elements().size(); ++index)
-    if (search.MeetElement(world, index)) return;
+    if (search.MeetElement(world, index)) break;
+  return search.result;
 }
 
+// The place where a walk begins; false if none is needed, or no more: then the search is done.
 template <typename Search>
-HWY_INLINE void Run(const World& world, Search& search) {
+HWY_INLINE bool Begin(const World& world, Search& search, GridWalk& walk, GridPlace& at) {
   const CurveGrid& grid = world.grid;
-  if (grid.frames().empty() || !HasDirection(search.line.direction)) return;
-  const GridCell& first = grid.cells()[grid.frames()[0].CellAt(0, 0)];
-  if (grid.frames()[0].columns * grid.frames()[0].rows == 1 && first.kind <= GridCell::kCurves) {
+  if (grid.frames().empty() || !HasDirection(search.line.direction)) return false;
+  const GridFrame& frame = grid.frames()[0];
+  const GridCell& first = grid.cells()[frame.CellAt(0, 0)];
+  if (frame.columns * frame.rows == 1 && first.kind <= GridCell::kCurves) {
     search.Meet(world, first);
-    return;
+    return false;
   }
   const Point2 origin = search.line.origin;
   const double farthest = std::max({1.0, std::abs(origin.x), std::abs(origin.y)});
-  if (HWY_UNLIKELY(64 * kUnitRoundoff * farthest > grid.least_margin())) return MeetAll(world, search);
-  GridWalk walk(search.line);
-  walk.Run(grid, search.end(), [&](const GridCell& cell) HWY_ATTR { return search.Meet(world, cell); });
+  if (HWY_UNLIKELY(64 * kUnitRoundoff * farthest > grid.least_margin())) {
+    search.result = MeetAll<Search>(world, search.input());
+    return false;
+  }
+  walk = GridWalk(search.line);
+  return walk.Begin(grid, search.end(), at);
+}
+
+template <typename Search>
+HWY_INLINE typename Search::Result Run(const World& world, const typename Search::Input& input) {
+  Search search(world, input);
+  GridWalk walk;
+  GridPlace at;
+  if (Begin(world, search, walk, at)) walk.Run(world, at, search);
+  return search.result;
+}
+
+// Some searches at a time, each in steps: memory brings the first cells of all while others are prepared. Input(i)
+// gives what the i-th search is made of.
+template <typename Search, typename Input>
+HWY_INLINE void RunMany(const World& world, std::size_t size, const Input& input, typename Search::Result* results) {
+  struct Runner {
+    Search search;
+    GridWalk walk;
+    GridPlace at;
+    bool walks;
+  };
+  constexpr std::size_t kTogether = 16;
+  Runner runners[kTogether];
+  const CurveGrid& grid = world.grid;
+  for (std::size_t begin = 0; begin < size; begin += kTogether) {
+    const std::size_t count = std::min(kTogether, size - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      Runner& runner = runners[i];
+      runner.search = Search(world, input(begin + i));
+      runner.walks = Begin(world, runner.search, runner.walk, runner.at);
+      if (runner.walks) hwy::Prefetch(grid.cells().data() + runner.at.cell);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!runners[i].walks) continue;
+      const GridCell cell = grid.cells()[runners[i].at.cell];
+      if (cell.kind > GridCell::kCurves) continue;
+      const char* const block = reinterpret_cast<const char*>(grid.blocks().data() + cell.first);
+      for (std::size_t line = 0; line < sizeof(CurveBlock); line += 64) hwy::Prefetch(block + line);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      Runner& runner = runners[i];
+      if (runner.walks) runner.walk.Run(world, runner.at, runner.search);
+      results[begin + i] = runner.search.result;
+    }
+  }
 }
 
 NearestCrossing Nearest(const Scene& scene, const CurveGrid& grid, const WalkRay& ray) {
   const World world{scene, grid};
-  NearestSearch search(world, ray);
-  Run(world, search);
-  return search.result;
+  return Run<NearestSearch>(world, ray);
 }
 
 void NearestOfMany(const Scene& scene, const CurveGrid& grid, std::span<const WalkRay> rays,
                    std::span<NearestCrossing> nearest) {
-  for (std::size_t i = 0; i < rays.size(); ++i) nearest[i] = Nearest(scene, grid, rays[i]);
+  RunMany<NearestSearch>(
+      {scene, grid}, rays.size(), [&](std::size_t i) { return rays[i]; }, nearest.data());
 }
 
 bool Blocker(const Scene& scene, const CurveGrid& grid, const RayEnd& from, const RayEnd& to) {
   const World world{scene, grid};
-  BlockerSearch search(world, {from, to});
-  Run(world, search);
-  return search.result;
+  return Run<BlockerSearch>(world, {from, to});
 }
 
 void BlockerOfMany(const Scene& scene, const CurveGrid& grid, std::span<const RayEnd> from, std::span<const RayEnd> to,
                    std::span<bool> blocked) {
-  for (std::size_t i = 0; i < from.size(); ++i) blocked[i] = Blocker(scene, grid, from[i], to[i]);
+  const auto places = [&](std::size_t i) { return PlacePair{from[i], to[i]}; };
+  RunMany<BlockerSearch>({scene, grid}, from.size(), places, blocked.data());
 }
 
 bool Touching(const Scene& scene, const CurveGrid& grid, const RayEnd& place) {
   const World world{scene, grid};
-  TouchSearch search(world, place);
-  Run(world, search);
-  return search.result;
+  return Run<TouchSearch>(world, place);
 }
 
 const RaySearches* Searches() {
