@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -50,9 +51,9 @@ static_assert(sizeof(GridCell) == 8);
 
 // The place of one grid's cells.
 struct GridFrame {
-  Point2 low;  // The corner of the first cell that is not outside.
-  double side = 1;
-  double inverse_side = 1;
+  Point2 low;          // The corner of the first cell that is not outside.
+  Vector2 side{1, 1};  // Of a cell.
+  Vector2 inverse_side{1, 1};
   std::uint32_t columns = 0;  // Without those outside.
   std::uint32_t rows = 0;
   std::uint32_t first_cell = 0;
@@ -78,8 +79,8 @@ class CurveGrid {
   const std::vector<GridFrame>& frames() const { return frames_; }
   const std::vector<GridCell>& cells() const { return cells_; }
   const std::vector<CurveBlock>& blocks() const { return blocks_; }
-  // Elements are in all cells that they come this near to.
-  double least_margin() const { return least_margin_; }
+  // Rays that begin farther than this from the origin may round to other cells than those they pass through.
+  double reach() const { return reach_; }
 
  private:
   friend class GridBuilder;
@@ -87,7 +88,7 @@ class CurveGrid {
   std::vector<GridFrame> frames_;
   std::vector<GridCell> cells_;
   std::vector<CurveBlock> blocks_;
-  double least_margin_ = 1;
+  double reach_ = std::numeric_limits<double>::infinity();
   std::size_t built_size_ = 0;  // Cells and blocks when it was built.
 };
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <span>
 
+#include "core/math/tolerances.h"
 #include "core/plane/grid_cover.h"
 
 namespace flatlight {
@@ -17,6 +18,9 @@ constexpr double kWanted = 6;
 // So many copies of each element there may be on average, and in grids in grids.
 constexpr double kMostCopies = 4;
 constexpr double kMostCopiesInside = 2;
+// Or so many in all, if that is more, but not more than so many of each.
+constexpr double kAlwaysCopies = 0x1p18;
+constexpr double kAlwaysCopiesOfEach = 16;
 // A cell of more gets a grid of its own.
 constexpr std::size_t kCrowd = 32;
 // Up to so many elements are looked at one and all.
@@ -30,31 +34,77 @@ constexpr double kLeastSide = 0x1p-30;
 // What a grid is to hold.
 struct Contents {
   Box box;
-  double length = 0;  // Of all elements.
+  Vector2 extent{0, 0};  // Of all elements, added up.
+  double length = 0;     // Of all elements.
   double count = 0;
+
+  void Add(const Box& element, double element_length) {
+    box.Add(element);
+    extent = extent + (element.high - element.low);
+    length += std::min(element_length, Length(element.high - element.low));
+    count += 1;
+  }
 };
 
-// The frame of a grid of square cells over a box.
-GridFrame FrameFor(const Contents& contents, double most_copies, double touch) {
-  const double n = contents.count, area_floor = 8 * touch + kLeastSide;
-  const double width = std::max(contents.box.high.x - contents.box.low.x, area_floor);
-  const double height = std::max(contents.box.high.y - contents.box.low.y, area_floor);
+double MarginFor(Vector2 side, double touch) { return kMargin * std::min(side.x, side.y) + 2 * touch; }
+
+// The side of square cells.
+double SquareSide(const Contents& contents, Vector2 size, double most_copies) {
   // Through a cell of side s pass n (s^2 + 4/pi s length/n) / area elements (Santalo 1976).
-  const double crossing = 4 / std::numbers::pi * contents.length;
-  double side = (std::sqrt(crossing * crossing + 4 * n * kWanted * width * height) - crossing) / (2 * n);
-  side = std::max({side, crossing / ((most_copies - 1) * n), kLeastSide, 64 * touch});
-  if (n <= kFew) side = 2 * std::max(width, height);
+  const double n = contents.count, crossing = 4 / std::numbers::pi * contents.length;
+  const double side = (std::sqrt(crossing * crossing + 4 * n * kWanted * size.x * size.y) - crossing) / (2 * n);
+  return std::max(side, crossing / ((most_copies - 1) * n));
+}
+
+// The height of cells as wide as the grid, where all elements together are `extent` high.
+double StripeHeight(double n, double extent, double height, double most_copies) {
+  return std::max((kWanted * height - extent) / n, extent / ((most_copies - 1) * n));
+}
+
+// What a ray costs among cells of these sides, in elements met.
+double Cost(const Contents& contents, Vector2 size, Vector2 side) {
+  constexpr double kStep = 8;  // From cell to cell.
+  const double area = size.x * size.y, n = contents.count;
+  // The mean free path (Santalo), and what passes through a cell.
+  const double path = std::min(0.5 * std::numbers::pi * area / contents.length, size.x + size.y);
+  const double along_x = side.x < size.x ? contents.extent.x / side.x : 0;
+  const double along_y = side.y < size.y ? contents.extent.y / side.y : 0;
+  const double cell = std::min(side.x, size.x) * std::min(side.y, size.y);
+  return (1 + path / side.x + path / side.y) * (kStep + (n + along_x + along_y) * cell / area);
+}
+
+// Square cells, or where curves are parallel to an axis, stripes along them if they are worth it.
+Vector2 SidesFor(const Contents& contents, Vector2 size, double most_copies) {
+  constexpr double kWorth = 0.5;
+  const double n = contents.count, square = SquareSide(contents, size, most_copies);
+  const double wide = 1.25 * size.x, high = 1.25 * size.y;  // With room for margins.
+  Vector2 best{square, square};
+  double least = kWorth * Cost(contents, size, best);
+  for (const Vector2 sides : {Vector2{wide, StripeHeight(n, contents.extent.y, size.y, most_copies)},
+                              Vector2{StripeHeight(n, contents.extent.x, size.x, most_copies), high}}) {
+    const double cost = Cost(contents, size, sides);
+    if (cost < least) best = sides, least = cost;
+  }
+  return best;
+}
+
+// The frame of a grid over a box.
+GridFrame FrameFor(const Contents& contents, double most_copies, double touch) {
+  const double n = contents.count, floor = kLeastSide + 64 * touch;
+  const Vector2 box = contents.box.high - contents.box.low, size{std::max(box.x, floor), std::max(box.y, floor)};
+  Vector2 side{2 * std::max(size.x, size.y), 2 * std::max(size.x, size.y)};
+  if (n > kFew) side = SidesFor(contents, size, most_copies);
+  side = {std::max(side.x, floor), std::max(side.y, floor)};
   // No more cells than elements, or nearly, be the box as thin as it may.
-  while ((width / side + 1) * (height / side + 1) > 2 * n + 16) side *= 1.1;
-  const double margin = kMargin * side + 2 * touch;
+  while ((size.x / side.x + 1) * (size.y / side.y + 1) > 2 * n + 16) side = 1.1 * side;
+  const double margin = MarginFor(side, touch);
   GridFrame frame;
   frame.side = side;
-  frame.inverse_side = 1 / side;
-  const auto cells = [&](double extent) { return static_cast<std::uint32_t>(std::ceil((extent + 2 * margin) / side)); };
-  frame.columns = cells(width);
-  frame.rows = cells(height);
-  const Point2 middle = contents.box.low + 0.5 * (contents.box.high - contents.box.low);
-  frame.low = {middle.x - 0.5 * frame.columns * side, middle.y - 0.5 * frame.rows * side};
+  frame.inverse_side = {1 / side.x, 1 / side.y};
+  frame.columns = static_cast<std::uint32_t>(std::ceil((size.x + 2 * margin) * frame.inverse_side.x));
+  frame.rows = static_cast<std::uint32_t>(std::ceil((size.y + 2 * margin) * frame.inverse_side.y));
+  const Point2 middle = contents.box.low + 0.5 * box;
+  frame.low = {middle.x - 0.5 * frame.columns * side.x, middle.y - 0.5 * frame.rows * side.y};
   return frame;
 }
 
@@ -63,15 +113,14 @@ GridFrame FrameFor(const Contents& contents, double most_copies, double touch) {
 void GridBuilder::Build() {
   const std::vector<Element>& elements = scene_.elements();
   Contents contents;
-  contents.count = static_cast<double>(elements.size());
   std::vector<std::uint32_t> all(elements.size());
   for (std::size_t i = 0; i < elements.size(); ++i) {
     all[i] = static_cast<std::uint32_t>(i);
-    contents.box.Add(BoxOf(elements[i], 2 * touch_));
-    contents.length += elements[i].length;
+    contents.Add(BoxOf(elements[i], 2 * touch_), elements[i].length);
   }
   grid_.frames_.emplace_back();
-  BuildGrid(0, FrameFor(contents, kMostCopies, touch_), all, 1);
+  BuildGrid(0, FrameFor(contents, std::clamp(kAlwaysCopies / contents.count, kMostCopies, kAlwaysCopiesOfEach), touch_),
+            all, 1);
 }
 
 void GridBuilder::BuildGrid(std::uint32_t index, GridFrame frame, Elements elements, std::size_t level) {
@@ -80,7 +129,9 @@ void GridBuilder::BuildGrid(std::uint32_t index, GridFrame frame, Elements eleme
   grid_.frames_[index] = frame;
   grid_.cells_.resize(grid_.cells_.size() + cells);
   const double margin = MarginOf(frame);
-  grid_.least_margin_ = std::min(grid_.least_margin_, margin);
+  // Rounding adds up from cell to cell.
+  const double steps = frame.columns + frame.rows;
+  grid_.reach_ = std::min(grid_.reach_, margin / (kUnitRoundoff * (64 + steps)));
   // The elements of each cell: first their numbers, then themselves.
   std::vector<std::uint32_t> begin(cells + 1, 0);
   for (const std::uint32_t e : elements) {
@@ -174,14 +225,14 @@ void GridBuilder::MeasureEmptiness(const GridFrame& frame) {
   }
 }
 
-double GridBuilder::MarginOf(const GridFrame& frame) const { return kMargin * frame.side + 2 * touch_; }
+double GridBuilder::MarginOf(const GridFrame& frame) const { return MarginFor(frame.side, touch_); }
 
 Box GridBuilder::CellBox(const GridFrame& frame, std::uint32_t cell) const {
   const std::uint32_t column = (cell - frame.first_cell) % frame.Stride() - 1;
   const std::uint32_t row = (cell - frame.first_cell) / frame.Stride() - 1;
   const double margin = MarginOf(frame);
-  const Point2 low{frame.low.x + column * frame.side - margin, frame.low.y + row * frame.side - margin};
-  return {low, low + (frame.side + 2 * margin) * Vector2{1, 1}};
+  const Point2 low{frame.low.x + column * frame.side.x - margin, frame.low.y + row * frame.side.y - margin};
+  return {low, low + frame.side + 2 * margin * Vector2{1, 1}};
 }
 
 GridFrame GridBuilder::FrameInside(const Box& cell, Elements elements) const {
@@ -190,9 +241,7 @@ GridFrame GridBuilder::FrameInside(const Box& cell, Elements elements) const {
     const Element& element = scene_.elements()[e];
     const Box box = ClippedBox(element, cell, 2 * touch_);
     if (box.low.x > box.high.x || box.low.y > box.high.y) continue;
-    contents.box.Add(box);
-    contents.length += std::min(element.length, Length(box.high - box.low));
-    contents.count += 1;
+    contents.Add(box, element.length);
   }
   return contents.count == 0 ? GridFrame{} : FrameFor(contents, kMostCopiesInside, touch_);
 }

@@ -41,13 +41,13 @@ void Cover(const Element& element, const GridFrame& frame, double margin, const 
   } else {
     box = BoxOf(element, 0);
   }
-  const auto number = [&](double offset, std::uint32_t count) {
-    return static_cast<std::uint32_t>(std::clamp(offset * frame.inverse_side, 0.0, static_cast<double>(count - 1)));
+  const auto number = [](double offset, std::uint32_t count) {
+    return static_cast<std::uint32_t>(std::clamp(offset, 0.0, static_cast<double>(count - 1)));
   };
-  const auto column_at = [&](double x) { return number(x - frame.low.x, frame.columns); };
-  const auto row_at = [&](double y) { return number(y - frame.low.y, frame.rows); };
+  const auto column_at = [&](double x) { return number((x - frame.low.x) * frame.inverse_side.x, frame.columns); };
+  const auto row_at = [&](double y) { return number((y - frame.low.y) * frame.inverse_side.y, frame.rows); };
   // Of a grid over a part of the scene only what lies in it.
-  const double right = frame.low.x + frame.columns * frame.side, top = frame.low.y + frame.rows * frame.side;
+  const double right = frame.low.x + frame.columns * frame.side.x, top = frame.low.y + frame.rows * frame.side.y;
   if (box.high.x + margin < frame.low.x || box.low.x - margin > right || box.high.y + margin < frame.low.y ||
       box.low.y - margin > top) {
     return;
@@ -65,7 +65,7 @@ void Cover(const Element& element, const GridFrame& frame, double margin, const 
     return;
   }
   for (std::uint32_t row = first_row; row <= last_row; ++row) {
-    const double low = frame.low.y + row * frame.side - margin, high = low + frame.side + 2 * margin;
+    const double low = frame.low.y + row * frame.side.y - margin, high = low + frame.side.y + 2 * margin;
     if (straight) {
       const Stretch part = StretchBetween(element.a, element.b, low, high);
       if (part.low > part.high || part.high + margin < frame.low.x || part.low - margin > right) continue;
@@ -80,8 +80,8 @@ void Cover(const Element& element, const GridFrame& frame, double margin, const 
     const double far_y = std::max(std::abs(y0), std::abs(y1)), near_y = y0 > 0 ? y0 : y1 < 0 ? -y1 : 0;
     const std::uint32_t last = column_at(box.high.x + margin);
     for (std::uint32_t column = column_at(box.low.x - margin); column <= last; ++column) {
-      const double x0 = frame.low.x + column * frame.side - margin - element.center.x;
-      const double x1 = x0 + frame.side + 2 * margin;
+      const double x0 = frame.low.x + column * frame.side.x - margin - element.center.x;
+      const double x1 = x0 + frame.side.x + 2 * margin;
       const double far_x = std::max(std::abs(x0), std::abs(x1)), near_x = x0 > 0 ? x0 : x1 < 0 ? -x1 : 0;
       const bool beyond = near_x * near_x + near_y * near_y > most * most;
       const bool within = least > 0 && far_x * far_x + far_y * far_y < least * least;

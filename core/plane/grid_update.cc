@@ -12,7 +12,8 @@ namespace {
 
 bool Encloses(const GridFrame& frame, const Box& box) {
   return frame.low.x <= box.low.x && frame.low.y <= box.low.y &&
-         frame.low.x + frame.columns * frame.side >= box.high.x && frame.low.y + frame.rows * frame.side >= box.high.y;
+         frame.low.x + frame.columns * frame.side.x >= box.high.x &&
+         frame.low.y + frame.rows * frame.side.y >= box.high.y;
 }
 
 }  // namespace

@@ -85,25 +85,25 @@ class GridWalk {
   HWY_INLINE bool Enter(const GridFrame& frame, double begin, double limit, double end, GridPlace& at) const {
     const double to_low_x = frame.low.x - origin_.x, to_low_y = frame.low.y - origin_.y;
     const double x0 = to_low_x * inverse_.x, y0 = to_low_y * inverse_.y;
-    const double x1 = (to_low_x + frame.columns * frame.side) * inverse_.x;
-    const double y1 = (to_low_y + frame.rows * frame.side) * inverse_.y;
+    const double x1 = (to_low_x + frame.columns * frame.side.x) * inverse_.x;
+    const double y1 = (to_low_y + frame.rows * frame.side.y) * inverse_.y;
     const double enter = std::max(std::max(begin, std::min(x0, x1)), std::min(y0, y1));
     const double leave = std::min(std::max(x0, x1), std::max(y0, y1));
     if (!(enter <= std::min({leave, limit, end}))) return false;
     at.limit = limit;
     const double last_column = static_cast<double>(frame.columns - 1), last_row = static_cast<double>(frame.rows - 1);
-    const double x = (enter * direction_.x - to_low_x) * frame.inverse_side;
-    const double y = (enter * direction_.y - to_low_y) * frame.inverse_side;
+    const double x = (enter * direction_.x - to_low_x) * frame.inverse_side.x;
+    const double y = (enter * direction_.y - to_low_y) * frame.inverse_side.y;
     const auto column = static_cast<std::int32_t>(std::min(std::max(x, 0.0), last_column));
     const auto row = static_cast<std::int32_t>(std::min(std::max(y, 0.0), last_row));
     const bool right = !std::signbit(direction_.x), up = !std::signbit(direction_.y);
     at.cell = frame.CellAt(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
     at.next_column = right ? 1 : -1;
     at.next_row = up ? static_cast<std::int32_t>(frame.Stride()) : -static_cast<std::int32_t>(frame.Stride());
-    at.to_column = (to_low_x + (column + (right ? 1 : 0)) * frame.side) * inverse_.x;
-    at.to_row = (to_low_y + (row + (up ? 1 : 0)) * frame.side) * inverse_.y;
-    at.column_length = frame.side * std::abs(inverse_.x);
-    at.row_length = frame.side * std::abs(inverse_.y);
+    at.to_column = (to_low_x + (column + (right ? 1 : 0)) * frame.side.x) * inverse_.x;
+    at.to_row = (to_low_y + (row + (up ? 1 : 0)) * frame.side.y) * inverse_.y;
+    at.column_length = frame.side.x * std::abs(inverse_.x);
+    at.row_length = frame.side.y * std::abs(inverse_.y);
     return true;
   }
 

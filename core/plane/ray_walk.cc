@@ -235,7 +235,7 @@ HWY_INLINE bool Begin(const World& world, Search& search, GridWalk& walk, GridPl
   }
   const Point2 origin = search.line.origin;
   const double farthest = std::max({1.0, std::abs(origin.x), std::abs(origin.y)});
-  if (HWY_UNLIKELY(64 * kUnitRoundoff * farthest > grid.least_margin())) {
+  if (HWY_UNLIKELY(farthest > grid.reach())) {
     search.result = MeetAll<Search>(world, search.input());
     return false;
   }

@@ -100,17 +100,35 @@ TEST(CurveGridTest, ManyCurvesThroughOnePointTakeNoMoreCellsThanOthers) {
   }
   const auto scene = BuildWithProbe(description);
   ASSERT_TRUE(scene);
-  EXPECT_LT(CurveGrid(*scene).blocks().size(), 3000u);
+  EXPECT_LT(CurveGrid(*scene).blocks().size() * CurveBlock::kWidth, 20 * scene->elements().size());
   ExpectAsBruteForce(RayCaster(scene), random, 50);
 }
 
 TEST(CurveGridTest, LongCurvesAreCopiedAFewTimesOnly) {
   Random random(3);
-  const auto scene = BuildWithProbe(Room(random, 5000, 0.3));
+  const auto scene = BuildWithProbe(Room(random, 70000, 0.3));
   ASSERT_TRUE(scene);
   EXPECT_LT(static_cast<double>(CurveGrid(*scene).blocks().size() * CurveBlock::kWidth),
             10 * static_cast<double>(scene->elements().size()));
-  ExpectAsBruteForce(RayCaster(scene), random, 200);
+  ExpectAsBruteForce(RayCaster(scene), random, 50);
+}
+
+TEST(CurveGridTest, ParallelCurvesMakeStripes) {
+  for (const bool upright : {false, true}) {
+    SceneDescription description;
+    for (int i = 0; i < 3000; ++i) {
+      const double at = 1e-3 * i;
+      AddCurve(description, upright ? SegmentDescription{{at, 0}, {at, 3}} : SegmentDescription{{0, at}, {3, at}});
+    }
+    const auto scene = BuildWithProbe(description);
+    ASSERT_TRUE(scene);
+    const CurveGrid grid(*scene);
+    const GridFrame& frame = grid.frames()[0];
+    EXPECT_EQ(upright ? frame.rows : frame.columns, 1u);
+    EXPECT_GT(upright ? frame.columns : frame.rows, 300u);
+    Random random(10);
+    ExpectAsBruteForce(RayCaster(scene), random);
+  }
 }
 
 TEST(CurveGridTest, CurvesOnOneLineMakeAGridOfOneRow) {
