@@ -56,11 +56,20 @@ void CheckRanges(const Settings& settings, Diagnostics& diagnostics) {
   }
 }
 
-void CheckDerivatives(const Settings& settings, Diagnostics& diagnostics) {
+void CheckDerivatives(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   const bool none = settings.derivatives.value_or(Derivatives::kHessian) == Derivatives::kNone;
   if (settings.method == Method::kPathTracing && settings.derivatives.has_value() && !none) {
     diagnostics.Add("settings.derivatives",
                     "path-tracing gives none: leave this out, or use exact, ray-tracing or reference");
+  }
+  // Where radiance varies along what appears behind an edge, the second derivative has a term that rays do not tell
+  // (THEORY 18 B6).
+  if (settings.method == Method::kRayTracing && settings.derivatives == Derivatives::kHessian &&
+      !DirectLightOnly(scene, settings)) {
+    diagnostics.Add(
+        "settings.derivatives",
+        "ray-tracing gives the Hessian of direct light alone, and this scene reflects: ask for the gradient, "
+        "set max bounces to 0, or use reference");
   }
   if (!settings.formulation.has_value()) return;
   if (settings.method != Method::kRayTracing) {
@@ -105,7 +114,7 @@ void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& d
 
 // Settings that the method would ignore, and scenes that it cannot do.
 void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
-  CheckDerivatives(settings, diagnostics);
+  CheckDerivatives(scene, settings, diagnostics);
   if (settings.method == Method::kRayTracing && scene.traits().pixels > 0) {
     diagnostics.Add("settings.method",
                     "ray-tracing gives irradiance at points, and a probe of this scene is a picture: use path-tracing");
@@ -158,7 +167,9 @@ void FillMethodDefaults(const Scene& scene, Plan& plan) {
   if (!settings.seed.has_value()) settings.seed = 0;
   const bool open_ended = settings.target_error.has_value() || settings.time_limit.has_value();
   if (settings.method == Method::kRayTracing) {
-    if (!settings.derivatives.has_value()) settings.derivatives = Derivatives::kHessian;
+    if (!settings.derivatives.has_value()) {
+      settings.derivatives = DirectLightOnly(scene, settings) ? Derivatives::kHessian : Derivatives::kGradient;
+    }
     if (settings.derivatives != Derivatives::kNone && !settings.formulation.has_value()) {
       settings.formulation = Formulation::kStratified;
     }

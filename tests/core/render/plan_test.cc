@@ -72,10 +72,16 @@ TEST(PlanTest, RayTracingGivesDerivatives) {
   settings.method = Method::kRayTracing;
   const Plan plan = PlanFor(*Reflecting(), settings);
   EXPECT_EQ(plan.settings.samples, 256u);
-  EXPECT_EQ(plan.settings.derivatives, Derivatives::kHessian);
+  EXPECT_EQ(plan.settings.derivatives, Derivatives::kGradient);
   EXPECT_EQ(plan.settings.formulation, Formulation::kStratified);
   EXPECT_GT(plan.passes[0].expected_rays, 256 * plan.passes[0].points);
-  EXPECT_THAT(plan.summary, testing::StartsWith("Ray tracing of all bounces with gradient and Hessian at "));
+  EXPECT_THAT(plan.summary, testing::StartsWith("Ray tracing of all bounces and its gradient at "));
+  EXPECT_EQ(PlanFor(*Black(), settings).settings.derivatives, Derivatives::kHessian);
+  settings.derivatives = Derivatives::kHessian;
+  EXPECT_THAT(Mistakes(*Reflecting(), settings), ElementsAre(HasSubstr("gives the Hessian of direct light alone")));
+  settings.max_bounces = 0;
+  EXPECT_THAT(Mistakes(*Reflecting(), settings), testing::IsEmpty());
+  settings.max_bounces.reset();
   settings.derivatives = Derivatives::kNone;
   EXPECT_FALSE(PlanFor(*Reflecting(), settings).settings.formulation.has_value());
 }
