@@ -16,6 +16,7 @@
 #include "core/math/vec.h"
 #include "core/plane/curve_grid.h"
 #include "core/plane/intersect.h"
+#include "core/plane/mask_byte.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace flatlight {
@@ -30,7 +31,7 @@ template <typename Mask>
 HWY_INLINE std::uint32_t BlockBits(Mask mask) {
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(Doubles(), mask, bits);
-  return bits[0];
+  return NumberOf(bits[0]);
 }
 
 HWY_INLINE std::uint32_t FirstLane(std::uint32_t lanes) {

@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "core/plane/bvh.h"
+#include "core/plane/mask_byte.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace flatlight {
@@ -31,7 +32,7 @@ HWY_INLINE hn::Vec<Floats> LoadNumbers(const std::uint8_t* numbers) {
 HWY_INLINE unsigned BitsOf(hn::Mask<Floats> mask) {
   std::uint8_t bits[8];
   hn::StoreMaskBits(Floats(), mask, bits);
-  return bits[0];
+  return NumberOf(bits[0]);
 }
 
 }  // namespace HWY_NAMESPACE
