@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/render/exact_field.h"
 #include "core/render/probe_points.h"
 #include "core/render/skips.h"
-#include "core/render/world_units.h"
 
 namespace flatlight {
 namespace {
@@ -130,13 +130,8 @@ std::shared_ptr<const Field> ExactRendering::Snapshot() const {
         for (std::size_t c = 0; c < channels; ++c) {
           values.irradiance.push_back(units.irradiance * value.irradiance.value[c]);
           bound = std::max(bound, units.irradiance * value.irradiance_error.value[c]);
-          if (derivatives_ < 1) continue;
-          values.gradient.push_back(units.gradient * value.gradient.value[c]);
-          values.gradient_error.push_back(units.gradient * value.gradient_error.value[c]);
-          if (derivatives_ < 2) continue;
-          values.hessian.push_back(units.hessian * value.hessian.value[c]);
-          values.hessian_error.push_back(units.hessian * value.hessian_error.value[c]);
         }
+        AppendDerivatives(value, channels, derivatives_, units, values);
       }
     }
     point = end;

@@ -41,7 +41,7 @@ class FluenceRendering final : public Rendering {
   // `paths` more of every replicate; false if cancelled before all had them.
   bool AddPaths(std::uint32_t paths, Executor& executor, const Cancellation& cancellation);
   void DecideEnd(Clock::Time now);
-  // Of one picture; the error by channel, then pixel, may be left out.
+  // Of one picture.
   ProbeField FieldOf(std::size_t picture, const PixelGrid& grid) const;
   double WorstError() const;
 

@@ -87,15 +87,17 @@ void CheckFading(const Scene& scene, const Settings& settings, Diagnostics& diag
       "it, or give a curve a reflectance below 1");
 }
 
+std::string NameOf(const Settings& settings) { return MethodNames()[static_cast<std::size_t>(*settings.method)]; }
+
+// Of deterministic methods.
+void RefuseSampling(const Settings& settings, Diagnostics& diagnostics) {
+  const std::string reason = "does not apply to " + NameOf(settings) + ", which draws no samples";
+  if (settings.samples.has_value()) diagnostics.Add("settings.samples", reason);
+  if (settings.seed.has_value()) diagnostics.Add("settings.seed", reason);
+}
+
 void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
-  if (scene.traits().pixels > 0) {
-    diagnostics.Add("settings.method",
-                    "reference gives irradiance at points, and a probe of this scene is a picture: use path-tracing");
-  }
-  if (settings.samples.has_value())
-    diagnostics.Add("settings.samples", "does not apply to reference, which draws no samples");
-  if (settings.seed.has_value())
-    diagnostics.Add("settings.seed", "does not apply to reference, which draws no samples");
+  RefuseSampling(settings, diagnostics);
   if (!DirectLightOnly(scene, settings) && !scene.traits().lambertian) {
     const auto other = std::find_if(scene.curves().begin(), scene.curves().end(), [](const Curve& curve) {
       return !std::holds_alternative<Lambertian>(curve.material) && !curve.reflectance.IsBlack();
@@ -115,19 +117,13 @@ void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& d
 // Settings that the method would ignore, and scenes that it cannot do.
 void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   CheckDerivatives(scene, settings, diagnostics);
-  if (settings.method == Method::kRayTracing && scene.traits().pixels > 0) {
-    diagnostics.Add("settings.method",
-                    "ray-tracing gives irradiance at points, and a probe of this scene is a picture: use path-tracing");
+  if (settings.method != Method::kPathTracing && scene.traits().pixels > 0) {
+    diagnostics.Add("settings.method", NameOf(settings) +
+                                           " gives irradiance at points, and a probe of this scene is a "
+                                           "picture: use path-tracing");
   }
   if (settings.method == Method::kExact) {
-    if (scene.traits().pixels > 0) {
-      diagnostics.Add("settings.method",
-                      "exact gives irradiance at points, and a probe of this scene is a picture: use "
-                      "path-tracing");
-    }
-    if (settings.samples.has_value())
-      diagnostics.Add("settings.samples", "does not apply to exact, which draws no samples");
-    if (settings.seed.has_value()) diagnostics.Add("settings.seed", "does not apply to exact, which draws no samples");
+    RefuseSampling(settings, diagnostics);
     if (settings.target_error.has_value())
       diagnostics.Add("settings.targetError", "does not apply to exact, which draws no samples");
     if (settings.time_limit.has_value())
@@ -146,7 +142,7 @@ void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diag
   if (settings.method == Method::kReference) return CheckReference(scene, settings, diagnostics);
   if (scene.traits().probe_points > 0 && !DirectLightOnly(scene, settings) && HasHiddenCaustics(scene)) {
     diagnostics.Add("settings.method",
-                    MethodNames()[static_cast<std::size_t>(*settings.method)] +
+                    NameOf(settings) +
                         " cannot find the light that plane.lights send over mirrors and glass: set max bounces "
                         "to 0, or give the light a surface, a small arc that emits");
   }

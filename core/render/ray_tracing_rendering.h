@@ -3,7 +3,6 @@
 #define FLATLIGHT_CORE_RENDER_RAY_TRACING_RENDERING_H_
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>

@@ -42,4 +42,19 @@ Edge HorizonEdge(double sign) {
   return edge;
 }
 
+double SineDifference(const Edge& a, const Edge& b, const Receiver& receiver) {
+  const double cosine = a.c * b.c + a.s * b.s;
+  if (!(cosine > 0) || a.kind == Edge::Kind::kHorizon || b.kind == Edge::Kind::kHorizon) return b.s - a.s;
+  double cross;
+  if (a.kind == Edge::Kind::kVertex && b.kind == Edge::Kind::kVertex) {
+    // About the nearer one, beside whose distance nothing is large.
+    const Vector2 e = b.point - a.point;
+    const Edge& nearer = a.q > b.q ? a : b;
+    cross = Dot(receiver.tangent, e) * nearer.normal - Dot(receiver.normal, e) * nearer.tangent;
+  } else {
+    cross = b.tangent * a.normal - b.normal * a.tangent;
+  }
+  return cross * a.q * b.q * (a.c + b.c) / (1 + cosine);
+}
+
 }  // namespace flatlight

@@ -60,6 +60,10 @@ inline void SetVertexEdge(double tangent, double normal, Point2 point, Edge& edg
   edge.point = point;
 }
 
+// sin theta_b - sin theta_a without losing the digits of a narrow piece: with the half-angle formula, and the piece's
+// own extent where both ends are its own.
+double SineDifference(const Edge& a, const Edge& b, const Receiver& receiver);
+
 // How sin(theta) changes per arc length along the receiver's tangent. For the break law theta' = kappa - c q,
 // q' = s q^2 + R c q^3 (R the signed radius) see Jarosz et al. 2012 for the straight receiver; here for curved
 // receivers and sliding silhouettes.

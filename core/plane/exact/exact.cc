@@ -9,23 +9,6 @@
 namespace flatlight {
 namespace {
 
-// sin theta_b - sin theta_a without losing the digits of a narrow piece: with the half-angle formula, and the piece's
-// own extent where both ends are its own.
-double SineDifference(const Edge& a, const Edge& b, const Receiver& receiver) {
-  const double cosine = a.c * b.c + a.s * b.s;
-  if (!(cosine > 0) || a.kind == Edge::Kind::kHorizon || b.kind == Edge::Kind::kHorizon) return b.s - a.s;
-  double cross;
-  if (a.kind == Edge::Kind::kVertex && b.kind == Edge::Kind::kVertex) {
-    // About the nearer one, beside whose distance nothing is large.
-    const Vector2 e = b.point - a.point;
-    const Edge& nearer = a.q > b.q ? a : b;
-    cross = Dot(receiver.tangent, e) * nearer.normal - Dot(receiver.normal, e) * nearer.tangent;
-  } else {
-    cross = b.tangent * a.normal - b.normal * a.tangent;
-  }
-  return cross * a.q * b.q * (a.c + b.c) / (1 + cosine);
-}
-
 // Adds up light while a ray turns from horizon to horizon.
 template <int kChannels>
 class LightSum {

@@ -4,14 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/plane/materials/lossless.h"
+
 namespace flatlight {
-namespace {
-
-// Light that nothing absorbs, in glass or among perfect mirrors, would go on for ever.
-constexpr std::uint32_t kMostLossless = 64;
-constexpr double kLosslessSurvival = 0.9;
-
-}  // namespace
 
 LightTracer::LightTracer(std::shared_ptr<const RayCaster> caster, const Box& seen,
                          std::optional<std::uint32_t> max_bounces)
@@ -60,7 +55,7 @@ bool LightTracer::Scatter(const Hit& hit, const SampleStream& stream, std::uint3
   const double before = flux.Max();
   flux = sample->weight * flux;
   double survival = std::min(1.0, flux.Max() / before);
-  if (depth > kMostLossless) survival = std::min(survival, kLosslessSurvival);
+  if (depth > std::uint32_t{kMostLossless}) survival = std::min(survival, kLosslessSurvival);
   if (stream.Single(index, depth) >= survival) return false;
   flux = (1 / survival) * flux;
   direction = Normalized(sample->in.sine * Right(normal) + sample->in.cosine * normal);

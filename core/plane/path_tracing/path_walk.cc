@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/math/check.h"
+#include "core/plane/materials/lossless.h"
 #include "core/plane/path_tracing/path_tracer.h"
 
 namespace flatlight {
@@ -16,10 +17,6 @@ namespace {
 // reflections free of roulette's noise, and no path goes on for longer than its share of the light is worth. (Measured:
 // docs/sampling.md.)
 constexpr double kLeastWeight = 0.2;
-// Light that glass has caught may go around for ever, and none of it is absorbed: after so many vertices without loss a
-// path plays roulette all the same.
-constexpr int kMostLossless = 64;
-constexpr double kLosslessSurvival = 0.9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Weight of the first of two techniques.

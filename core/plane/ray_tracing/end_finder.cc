@@ -5,33 +5,35 @@
 
 namespace flatlight {
 
-std::optional<Break> EndFinder::Between(const GatheredRay& a, const GatheredRay& b) const {
+namespace {
+
+// Whether an edge above the horizon lies between two rays, of which the near one may be in its direction.
+bool LiesBetween(const Edge& edge, const GatheredRay& near, const GatheredRay& far) {
+  const bool between =
+      near.sine < far.sine ? near.sine <= edge.s && edge.s < far.sine : far.sine < edge.s && edge.s <= near.sine;
+  return between && edge.c > 0;
+}
+
+}  // namespace
+
+std::optional<Edge> EndFinder::Between(const GatheredRay& a, const GatheredRay& b) const {
   if (a.element == b.element) return std::nullopt;
   const bool a_is_near = a.InverseDistance() >= b.InverseDistance();
   const GatheredRay &near = a_is_near ? a : b, &far = a_is_near ? b : a;
   const Element& piece = scene_.element(near.element);
   // An arc that turns away ends there, wherever its own end hides.
   if (piece.kind == Element::Kind::kArc) {
-    if (const std::optional<Break> found = Silhouette(piece, near, far)) return found;
+    if (const std::optional<Edge> found = Silhouette(piece, near, far)) return found;
   }
   for (const Point2 end : {piece.a, piece.b}) {
-    if (const std::optional<Break> found = At(end - receiver_.position, 0, near, far)) return found;
+    if (end == receiver_.position) continue;
+    const Edge edge = VertexEdge(receiver_, end);
+    if (LiesBetween(edge, near, far)) return edge;
   }
   return std::nullopt;
 }
 
-std::optional<Break> EndFinder::At(Vector2 to, double turn, const GatheredRay& near, const GatheredRay& far) const {
-  const double distance = Length(to);
-  if (!(distance > 0)) return std::nullopt;
-  const double sine = Dot(to, receiver_.tangent) / distance, cosine = Dot(to, receiver_.normal) / distance;
-  const bool between =
-      near.sine < far.sine ? near.sine <= sine && sine < far.sine : far.sine < sine && sine <= near.sine;
-  if (!between || !(cosine > 0)) return std::nullopt;
-  return Break{sine, cosine, 1 / distance, turn};
-}
-
-std::optional<Break> EndFinder::Silhouette(const Element& piece, const GatheredRay& near,
-                                           const GatheredRay& far) const {
+std::optional<Edge> EndFinder::Silhouette(const Element& piece, const GatheredRay& near, const GatheredRay& far) const {
   const Vector2 to_center = piece.center - receiver_.position;
   const double squared = LengthSquared(to_center), beyond = squared - piece.radius * piece.radius;
   if (!(beyond > 0)) return std::nullopt;  // From inside there is none.
@@ -40,12 +42,9 @@ std::optional<Break> EndFinder::Silhouette(const Element& piece, const GatheredR
   const bool left = Cross(near.to, far.sine * receiver_.tangent + far.cosine * receiver_.normal) > 0;
   const Vector2 aside = (left ? piece.radius : -piece.radius) * Left(to_center);
   const Vector2 to = (tangent_length / squared) * (tangent_length * to_center + aside);
-  // Angles from the normal toward the tangent run clockwise where the tangent is on the normal's right.
-  const bool grows_clockwise = Cross(receiver_.normal, receiver_.tangent) < 0;
-  const double turn = left == grows_clockwise ? piece.radius : -piece.radius;
-  const std::optional<Break> found = At(to, turn, near, far);
-  if (!found || !OnArc(scene_.curve(piece.curve), piece, receiver_.position + to)) return std::nullopt;
-  return found;
+  const Edge edge = SilhouetteEdge(receiver_, to, to_center - to);
+  if (!LiesBetween(edge, near, far) || !OnArc(scene_.curve(piece.curve), piece, edge.point)) return std::nullopt;
+  return edge;
 }
 
 bool EndFinder::OnArc(const Curve& curve, const Element& piece, Point2 point) const {

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "core/plane/ray_tracing/break_law.h"
+#include "core/plane/exact/edge.h"
 #include "core/plane/ray_tracing/hemicircle_gather.h"
 #include "core/scene/scene.h"
 
@@ -17,11 +17,10 @@ class EndFinder {
   EndFinder(const Scene& scene, const Receiver& receiver) : scene_(scene), receiver_(receiver) {}
 
   // Where the nearer of two neighbours' surfaces ends between them; absent if it does not.
-  std::optional<Break> Between(const GatheredRay& a, const GatheredRay& b) const;
+  std::optional<Edge> Between(const GatheredRay& a, const GatheredRay& b) const;
 
  private:
-  std::optional<Break> At(Vector2 to, double turn, const GatheredRay& near, const GatheredRay& far) const;
-  std::optional<Break> Silhouette(const Element& piece, const GatheredRay& near, const GatheredRay& far) const;
+  std::optional<Edge> Silhouette(const Element& piece, const GatheredRay& near, const GatheredRay& far) const;
   // Whether some piece of the curve on the circle of `piece` has the point.
   bool OnArc(const Curve& curve, const Element& piece, Point2 point) const;
 

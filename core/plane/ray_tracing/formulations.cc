@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/plane/ray_tracing/break_law.h"
+#include "core/plane/exact/edge.h"
 
 namespace flatlight {
 namespace {
@@ -14,15 +14,22 @@ constexpr double kLeastCosine = 1e-3;
 
 Spectrum Difference(const Spectrum& a, const Spectrum& b) { return a + -1.0 * b; }
 
+// A fixed point in a direction, for its motion alone.
+Edge FixedEdge(double sine, double inverse_distance) {
+  Edge edge;
+  edge.s = sine, edge.c = CosineOf(sine), edge.q = inverse_distance;
+  return edge;
+}
+
 // A sum of radiance times the motion of breaks.
 class MotionSum {
  public:
   explicit MotionSum(double kappa) : kappa_(kappa) {}
 
-  void Add(const Spectrum& radiance, const Break& at) {
-    const BreakMotion motion = MotionOf(at, kappa_);
-    sum_.first = sum_.first + motion.first * radiance;
-    sum_.second = sum_.second + motion.second * radiance;
+  void Add(const Spectrum& radiance, const Edge& at) {
+    const EdgeDerivatives motion = Derive(at, kappa_);
+    sum_.first = sum_.first + motion.s_first * radiance;
+    sum_.second = sum_.second + motion.s_second * radiance;
   }
   const GatherDerivatives& sum() const { return sum_; }
 
@@ -37,8 +44,7 @@ GatherDerivatives StratifiedDerivatives(const Receiver& receiver, const std::vec
   MotionSum sum(receiver.curvature);
   for (std::size_t k = 1; k < gathered.size(); ++k) {
     const GatheredRay &before = gathered[k - 1], &after = gathered[k];
-    const Break between{after.begin, CosineOf(after.begin), std::max(before.InverseDistance(), after.InverseDistance()),
-                        0};
+    const Edge between = FixedEdge(after.begin, std::max(before.InverseDistance(), after.InverseDistance()));
     sum.Add(Difference(before.radiance, after.radiance), after.break_before.value_or(between));
   }
   return sum.sum();
@@ -50,10 +56,10 @@ GatherDerivatives PolylineDerivatives(const Receiver& receiver, const std::vecto
   Spectrum left = gathered.front().radiance;
   for (std::size_t k = 0; k < gathered.size(); ++k) {
     const GatheredRay& ray = gathered[k];
-    const Break vertex{ray.sine, ray.cosine, ray.InverseDistance(), 0};
+    const Edge vertex = FixedEdge(ray.sine, ray.InverseDistance());
     const GatheredRay* const next = k + 1 < gathered.size() ? &gathered[k + 1] : nullptr;
     Spectrum right = ray.radiance;
-    if (next != nullptr && !next->break_before && next->InverseDistance() <= vertex.inverse_distance) {
+    if (next != nullptr && !next->break_before && next->InverseDistance() <= vertex.q) {
       right = next->radiance;
     }
     sum.Add(Difference(left, right), vertex);

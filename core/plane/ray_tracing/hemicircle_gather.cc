@@ -67,14 +67,14 @@ void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t r
     GatheredRay after = gathered[k + 1];
     later.clear();
     for (int look = 0; look < kMostLooks; ++look) {
-      const std::optional<Break> end = ends.Between(all.back(), after);
+      const std::optional<Edge> end = ends.Between(all.back(), after);
       if (!end) break;
       const bool forward = all.back().InverseDistance() >= after.InverseDistance();
       GatheredRay past;
       past.begin = past.end = gathered[k].end;
       // As far beyond the end as coordinates are sure of.
-      const double step = 4 * tree.caster().scene().touch_distance() * std::max(end->inverse_distance, 1.0);
-      past.sine = end->sine + (forward ? step : -step);
+      const double step = 4 * tree.caster().scene().touch_distance() * std::max(end->q, 1.0);
+      past.sine = end->s + (forward ? step : -step);
       if (!(past.sine > all.back().sine && past.sine < after.sine)) break;
       Cast(tree, receiver, rays, ChildKey(key, kPast + (std::uint64_t{k} << 8) + static_cast<std::uint64_t>(look)),
            cancellation, past, cast);

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/plane/ray_tracing/break_law.h"
+#include "core/plane/exact/edge.h"
 #include "core/plane/ray_tracing/ray_tree.h"
 #include "core/scene/scene.h"
 
@@ -25,7 +25,7 @@ struct GatheredRay {
   Vector2 to;      // From the receiver.
   Vector2 normal;  // Unit, of the curve there, toward the receiver.
   // Between the ray before and this one, if it is known where: the end of the nearer of two surfaces.
-  std::optional<Break> break_before;
+  std::optional<Edge> break_before;
 
   double InverseDistance() const { return element == ElementId::kNone ? 0 : 1 / Length(to); }
 };

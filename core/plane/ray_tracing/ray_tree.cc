@@ -7,14 +7,12 @@
 #include <utility>
 #include <variant>
 
+#include "core/plane/materials/lossless.h"
 #include "core/sampling/hash.h"
 
 namespace flatlight {
 namespace {
 
-// Light that nothing absorbs, in glass or among perfect mirrors, would go on for ever.
-constexpr int kMostLossless = 64;
-constexpr double kLosslessSurvival = 0.9;
 // Children of a vertex's key, beyond any number of rays.
 constexpr std::uint64_t kRoulette = std::uint64_t{1} << 40;
 constexpr std::uint64_t kLights = kRoulette + 1;

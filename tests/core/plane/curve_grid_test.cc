@@ -19,34 +19,11 @@
 namespace flatlight {
 namespace {
 
-// A room, so that edits inside leave its extent, and with it all other coordinates, as they are.
-SceneDescription Room(Random& random, int count, double size) {
-  SceneDescription description;
-  AddCurve(description, PolylineDescription{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, true});
-  for (int i = 0; i < count; ++i) {
-    const Point2 a{random.Uniform(-0.9, 0.9), random.Uniform(-0.9, 0.9)};
-    if (i % 5 == 0) {
-      AddCurve(description, ArcDescription{a, 0.5 * size, random.Uniform(-3, 3), 1.2});
-    } else {
-      AddCurve(description, SegmentDescription{a, a + size * random.Direction()});
-    }
-  }
-  return description;
-}
-
 // Curves of `size` in a square of `extent`.
 void AddCluster(SceneDescription& description, Random& random, Point2 middle, double extent, double size, int count) {
   for (int i = 0; i < count; ++i) {
     const Point2 a = middle + extent * (random.Point() - Point2{});
     AddCurve(description, SegmentDescription{a, a + size * random.Direction()});
-  }
-}
-
-void Move(CurveDescription& curve, Vector2 by) {
-  if (auto* segment = std::get_if<SegmentDescription>(&curve.shape)) {
-    segment->a = segment->a + by, segment->b = segment->b + by;
-  } else if (auto* arc = std::get_if<ArcDescription>(&curve.shape)) {
-    arc->center = arc->center + by;
   }
 }
 
