@@ -9,8 +9,10 @@
 namespace flatlight {
 
 // Finds the element each receiver lies on (within `near` of it), by position alone, and sets Receiver::element:
-// where two meet, to that which goes on along the receiver's tangent. One whose normal is not that of the curve it lies
-// on (a free point may be turned) gets none; it is lifted off the curve toward its normal instead.
+// where two meet, to that which goes on along the receiver's tangent, and of those that do to the straightest, one that
+// bends away from its normal before one that bends to it: a circle on a floor stands above the receiver. One whose
+// normal is not that of the curve it lies on (a free point may be turned) gets none; it is lifted off the curve toward
+// its normal instead, and moved on along its tangent from what it still touches.
 void AttachReceivers(const std::vector<Element>& elements, double near, std::vector<Receiver*> receivers);
 
 }  // namespace flatlight

@@ -72,6 +72,7 @@ struct Receiver {
   double curvature = 0;                  // kappa: d(tangent)/d(arc length) = kappa * normal.
   ElementId element = ElementId::kNone;  // The piece it lies on.
   double arc_length = 0;
+  double displaced = 0;  // How far from where the author put it: see kLiftTouches.
 };
 
 // A picture of a part of the plane. Normalised coordinates.

@@ -3,6 +3,7 @@
 #ifndef FLATLIGHT_CORE_PLANE_EXACT_EDGE_H_
 #define FLATLIGHT_CORE_PLANE_EXACT_EDGE_H_
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/math/tolerances.h"
@@ -16,6 +17,7 @@ struct Edge {
   enum class Kind : unsigned char {
     kVertex,      // A fixed point: an end of a piece, or a place where two cross.
     kSilhouette,  // The touching point of a tangent to an arc; it slides as the receiver moves.
+    kTouch,       // The same of an arc that passes through the receiver, where its derivatives have no bound.
     kHorizon,  // The receiver's own horizon, where everything below is cut off: theta = +-pi/2, whatever moves there.
   };
   Kind kind = Kind::kVertex;
@@ -27,6 +29,9 @@ struct Edge {
   double q = 0;    // 1/distance
   // Silhouettes: the arc's radius, positive if its centre lies toward +theta of the touching point.
   double signed_radius = 0;
+  // Bounds on errors beyond those of the coordinates: of theta, and of the distance, relative.
+  double turn = 0;
+  double stretch = 0;
   Point2 point;  // Not at the horizon.
 
   double Distance() const { return 1 / q; }
@@ -56,7 +61,7 @@ inline void SetVertexEdge(double tangent, double normal, Point2 point, Edge& edg
   edge.q = 1 / std::sqrt(tangent * tangent + normal * normal);
   edge.s = tangent * edge.q;
   edge.c = normal * edge.q;
-  edge.signed_radius = 0;
+  edge.signed_radius = edge.turn = edge.stretch = 0;
   edge.point = point;
 }
 
@@ -95,16 +100,20 @@ inline EdgeErrors BoundErrors(const Edge& edge, double curvature, double coordin
   // An edge may lie below the horizon by the accuracy of the coordinates.
   const double c = std::abs(edge.c), q = edge.q, k = std::abs(curvature), r = std::abs(edge.signed_radius);
   constexpr double u = kUnitRoundoff;
+  if (edge.kind == Edge::Kind::kTouch) {
+    const EdgeDerivatives d = Derive(edge, curvature);
+    return {2 * (c * edge.turn + 4 * u), std::abs(d.s_first), std::abs(d.s_second)};
+  }
   // The direction turns by the displacement over the distance; a touching point slides with it.
-  const double turn = 2 * coordinate_error * q + 4 * u;
+  const double turn = 2 * coordinate_error * q + 4 * u + edge.turn;
   const double cq = c * q, ccq = c * c * q, ccqq = ccq * q;
   EdgeErrors e;
-  e.s = c * turn + 4 * u;
+  e.s = std::min(2.0, (c + edge.turn) * turn) + 4 * u;
   if (k == 0 && r == 0) {
-    e.s_first = (2 * cq + ccq) * turn + 8 * u * ccq;
-    e.s_second = (9 * cq * q + 6 * ccqq) * turn + 48 * u * ccqq;
+    e.s_first = (2 * cq + ccq) * turn + ccq * edge.stretch + 8 * u * ccq;
+    e.s_second = (9 * cq * q + 6 * ccqq) * turn + 6 * ccqq * edge.stretch + 48 * u * ccqq;
   } else {
-    const double relative_q = turn * (1 + r * q), rccqqq = r * ccqq * q;
+    const double relative_q = turn * (1 + r * q) + edge.stretch, rccqqq = r * ccqq * q;
     e.s_first = (k + 2 * cq) * turn + ccq * relative_q + 8 * u * (k * c + ccq);
     e.s_second = (k * k + 6 * k * q + 9 * cq * q + 3 * rccqqq) * turn +
                  (3 * k * cq + 6 * ccqq + 3 * c * rccqqq) * relative_q +

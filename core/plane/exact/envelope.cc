@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/math/tolerances.h"
+#include "core/plane/exact/meeting.h"
 #include "core/plane/intersect.h"
 
 namespace flatlight {
@@ -16,6 +17,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Far above rounding, far below what would cost time.
 constexpr double kKeyMargin = 1e-10;
 constexpr float kBeyond = 4;  // A key that nothing reaches.
+
+// Sine of a small angle.
+constexpr double kShallow = 0.1;
 
 // Distances that differ by more than so many bounds on their errors differ for certain.
 constexpr double kCertain = 1024;
@@ -29,6 +33,7 @@ void Envelope::Start(const Receiver& receiver) {
   doubtful_ = false;
   most_uncertain_ = 0;
   crossings_.clear();
+  crossing_elements_.clear();
   if (seen_.empty()) seen_.resize(64);
   SightBetween& horizon = seen_[0];
   horizon.low = horizon.high = SightEnd();
@@ -85,6 +90,7 @@ void Envelope::Add() {
 
 std::size_t Envelope::TakePieces(std::size_t sector, std::int32_t sight, const Order& order, double from,
                                  std::uint32_t from_end, double to, std::uint32_t to_end) {
+  const ElementId hidden = SightOf(sectors_[sector]).element;
   bool front = order.first == Nearer::kYes;
   for (int piece = 0; piece <= order.changes; ++piece, front = !front) {
     double stop = to;
@@ -93,6 +99,7 @@ std::size_t Envelope::TakePieces(std::size_t sector, std::int32_t sight, const O
       const SightEnd& crossing = order.crossings[piece];
       stop = crossing.key, stop_end = kCrossing + static_cast<std::uint32_t>(crossings_.size());
       crossings_.push_back(crossing);
+      crossing_elements_.emplace_back(seen_[static_cast<std::size_t>(sight)].sight.element, hidden);
       most_uncertain_ = std::max(most_uncertain_, crossing.uncertain);
     }
     if (front) sector = Take(sector, sight, from, from_end, stop, stop_end);
@@ -133,6 +140,11 @@ bool Envelope::IsBehind(const Sight& sight, std::size_t sector, const SightEnd& 
   return !sight.part && !other.part && CompareAt(sight, other, at) == Nearer::kNo;
 }
 
+void Envelope::AddCrossingError(std::uint32_t crossing, Edge& edge) const {
+  const auto& [first, second] = crossing_elements_[crossing];
+  AddMeetingError(scene_, *receiver_, scene_.element(first), scene_.element(second), edge);
+}
+
 Envelope::Nearer Envelope::CompareAt(const Sight& sight, const Sight& other, const SightEnd& at) const {
   // The reciprocal distances, times both areas.
   const double cross = sight.CrossAlong(at), other_cross = other.CrossAlong(at);
@@ -144,7 +156,14 @@ Envelope::Nearer Envelope::CompareAt(const Sight& sight, const Sight& other, con
   // They meet in this direction: at the place that the end stands for, or it is not the end between them.
   const bool here = at.kind == SightEnd::Kind::kHorizon ||
                     std::abs(cross - sight.area) <= kCertain * (Reach(at) * sight.along_doubt + sight.area_doubt);
-  return here ? Nearer::kEqual : Nearer::kDoubt;
+  if (!here) return Nearer::kDoubt;
+  // Which of two that meet at a small angle is in front depends on rounding for some way.
+  const double turn = sight.along_normal * other.along_tangent - sight.along_tangent * other.along_normal;
+  const double reach = (std::abs(sight.along_tangent) + std::abs(sight.along_normal)) *
+                       (std::abs(other.along_tangent) + std::abs(other.along_normal));
+  if (at.kind == SightEnd::Kind::kHorizon || std::abs(turn) > kShallow * reach) return Nearer::kEqual;
+  const Element &e = scene_.element(sight.element), &f = scene_.element(other.element);
+  return e.a == f.a || e.a == f.b || e.b == f.a || e.b == f.b ? Nearer::kEqual : Nearer::kDoubt;
 }
 
 void Envelope::Compare(const Sight& sight, const Sight& other, const SightEnd& low, const SightEnd& high,
@@ -201,6 +220,7 @@ int Envelope::Crossings(const Sight& sight, const Sight& other, const SightEnd& 
   const Element& e = scene_.element(ordered ? sight.element : other.element);
   const Element& f = scene_.element(ordered ? other.element : sight.element);
   if (e.carrier == f.carrier) return 0;
+  if (IsTangentBetween(e, f, low.key, high.key)) return -1;
   const ElementCrossings points = CrossElements(e, f, scene_.touch_distance());
   int count = 0;
   for (int i = 0; i < points.count; ++i) {
@@ -233,6 +253,16 @@ int Envelope::Crossings(const Sight& sight, const Sight& other, const SightEnd& 
   return count;
 }
 
+bool Envelope::IsTangentBetween(const Element& e, const Element& f, double low, double high) const {
+  const Tangencies tangencies = FindTangencies(scene_, e, f);
+  for (int i = 0; i < tangencies.count; ++i) {
+    Edge edge = VertexEdge(*receiver_, tangencies.place[i]);
+    AddMeetingError(scene_, *receiver_, e, f, edge);
+    if (MayLieBetween(edge, low, high)) return true;
+  }
+  return false;
+}
+
 Envelope::Nearer Envelope::CompareBetween(const Sight& sight, const Sight& other, double low, double high) const {
   const double key = 0.5 * (low + high);
   const double distance = DistanceOf(sight, key), other_distance = DistanceOf(other, key);
@@ -243,19 +273,10 @@ Envelope::Nearer Envelope::CompareBetween(const Sight& sight, const Sight& other
 }
 
 double Envelope::DistanceDoubt(const Sight& sight, double key, double distance) const {
-  // How far the ray is aside at the distance.
-  const double aside = 16 * kUnitRoundoff * std::abs(distance) + 4 * scene_.coordinate_error();
   const UnitDirection d(key);
-  if (!sight.part) {
-    const double cross = d.normal * sight.along_tangent - d.tangent * sight.along_normal;
-    return std::abs(distance) * (sight.area_doubt / sight.area + 2 * sight.along_doubt / std::abs(cross));
-  }
-  // By its slope; where the ray touches the circle, by the root.
-  const Element& arc = scene_.element(sight.element);
-  const Vector2 direction = d.tangent * receiver_->tangent + d.normal * receiver_->normal;
-  const Vector2 radial = arc.radial_a + ((receiver_->position - arc.a) + distance * direction) / arc.radius;
-  const double incidence = std::abs(Dot(direction, radial)) / Length(radial);
-  return 2 * std::min(aside / incidence, std::sqrt(2 * aside * arc.radius));
+  if (sight.part) return flatlight::DistanceDoubt(scene_, *sight.part, *receiver_, d.tangent, d.normal, distance);
+  const double cross = d.normal * sight.along_tangent - d.tangent * sight.along_normal;
+  return std::abs(distance) * (sight.area_doubt / sight.area + 2 * sight.along_doubt / std::abs(cross));
 }
 
 double Envelope::DistanceOf(const Sight& sight, double key) const {

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/plane/exact/edge.h"
@@ -44,6 +45,7 @@ class Envelope {
     const SightEnd& end = End(sector.end);
     if (end.kind == SightEnd::Kind::kVertex) {
       SetVertexEdge(end.tangent, end.normal, end.point, edge);
+      if (sector.end >= kCrossing) AddCrossingError(sector.end - kCrossing, edge);
     } else {
       edge = end.kind == SightEnd::Kind::kHorizon ? HorizonEdge(end.tangent) : *end.edge;
     }
@@ -68,6 +70,7 @@ class Envelope {
     const SightBetween& seen = seen_[end / 2];
     return end % 2 == 0 ? seen.low : seen.high;
   }
+  void AddCrossingError(std::uint32_t crossing, Edge& edge) const;
   // Moves an end of a new part to the boundary between sectors that it coincides with.
   void Align(const Sight& sight, double inward, std::size_t at, double& key, std::uint32_t& end);
   bool IsBehind(const Sight& sight, std::size_t sector, const SightEnd& at) const;
@@ -81,6 +84,8 @@ class Envelope {
   // The points that two elements have in common strictly between two ends, in their order; -1 if that is uncertain.
   int Crossings(const Sight& sight, const Sight& other, const SightEnd& low, const SightEnd& high,
                 SightEnd (&crossings)[2]) const;
+  // Whether they touch, to the accuracy of the coordinates, in a direction between two keys.
+  bool IsTangentBetween(const Element& e, const Element& f, double low, double high) const;
   Nearer CompareBetween(const Sight& sight, const Sight& other, double low, double high) const;
   // The sight takes the directions between two ends within a sector. Returns the last sector it touched.
   std::size_t Take(std::size_t sector, std::int32_t sight, double low, std::uint32_t low_end, double high,
@@ -101,6 +106,7 @@ class Envelope {
   std::vector<SightBetween> seen_;  // The first one's ends are the horizon.
   std::size_t used_ = 0;
   std::vector<SightEnd> crossings_;
+  std::vector<std::pair<ElementId, ElementId>> crossing_elements_;
 };
 
 }  // namespace flatlight

@@ -9,12 +9,15 @@
 namespace flatlight {
 namespace {
 
+// How much farther away, relative, is behind for certain.
+constexpr double kBehind = 1e-6;
+
 // Adds up light while a ray turns from horizon to horizon.
 template <int kChannels>
 class LightSum {
  public:
   LightSum(const Scene& scene, const ExactOptions& options, const Receiver& receiver, ExactValue& value)
-      : coordinate_error_(scene.coordinate_error()),
+      : coordinate_error_(scene.coordinate_error() + receiver.displaced),
         derivatives_(options.derivatives),
         receiver_(receiver),
         value_(value) {}
@@ -24,6 +27,8 @@ class LightSum {
       if (after[channel] != before_[channel]) return true;
     return false;
   }
+
+  const Spectrum& before() const { return before_; }
 
   // Where the next edge is to be written.
   Edge& Next() { return edges_[next_]; }
@@ -153,7 +158,7 @@ bool ExactSolver::AddView(const Receiver& receiver, ExactValue& value) {
       const Vector2 to{limit.x, limit.y};
       SetVertexEdge(Dot(receiver.tangent, to), Dot(receiver.normal, to), triangulation_->vertices()[limit.vertex],
                     sum.Next());
-      sum.Turn(after, triangulation_->Uncertain(limit.vertex));
+      sum.Turn(after, triangulation_->Uncertain(limit.vertex) + receiver.displaced);
     }
   });
   if (!decided) value = ExactValue();
@@ -195,15 +200,60 @@ void ExactSolver::AddIntervals(const std::vector<VisibleInterval>& intervals, co
     sum.Turn(after);
   };
   turn_at_horizon(-1, scene_.environment());
-  for (const VisibleInterval& interval : intervals) {
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    const VisibleInterval& interval = intervals[i];
     Spectrum after = scene_.environment();
     if (interval.part != VisibleInterval::kNothing)
       after = scene_.curve_of(parts[static_cast<std::size_t>(interval.part)].element).EmittedRadiance(interval.side);
     if (!sum.Changes(after)) continue;
+    if (IsSlit(intervals, i, parts, receiver)) {
+      // As wide as it is computed to be, to the accuracy of both ends.
+      const Edge &begin = interval.begin, &end = intervals[i + 1].begin;
+      const double known = scene_.coordinate_error() + receiver.displaced;
+      const double width = std::abs(SineDifference(begin, end, receiver)) +
+                           BoundErrors(begin, receiver.curvature, known).s +
+                           BoundErrors(end, receiver.curvature, known).s;
+      for (int channel = 0; channel < kChannels; ++channel)
+        value.irradiance_error[channel] += std::max(after[channel], sum.before()[channel]) * width;
+      continue;
+    }
     sum.Next() = interval.begin;
     sum.Turn(after);
   }
   turn_at_horizon(1, {});
+  AddMeetings<kChannels>(receiver, value);
+}
+
+bool ExactSolver::IsSlit(const std::vector<VisibleInterval>& intervals, std::size_t i, const std::vector<Part>& parts,
+                         const Receiver& receiver) const {
+  // Between the ends of two things, and behind both.
+  if (i == 0 || i + 1 >= intervals.size()) return false;
+  const VisibleInterval &before = intervals[i - 1], &here = intervals[i], &after = intervals[i + 1];
+  if (before.part == VisibleInterval::kNothing || after.part == VisibleInterval::kNothing) return false;
+  const Edge &begin = here.begin, &end = after.begin;
+  if (begin.kind != Edge::Kind::kVertex || end.kind != Edge::Kind::kVertex) return false;
+  // Ends in one direction that are not one place are an event: as the receiver moves on, the gap opens.
+  if (!(Length(end.point - begin.point) <= 2 * scene_.touch_distance())) return false;
+  if (here.part == VisibleInterval::kNothing) return true;
+  const Part& part = parts[static_cast<std::size_t>(here.part)];
+  const double distance = DistanceAlong(scene_.element(part.element), part, receiver, begin.s, begin.c);
+  const double farther = std::max(begin.Distance(), end.Distance());
+  return distance > farther * (1 + kBehind) + scene_.touch_distance();
+}
+
+template <int kChannels>
+void ExactSolver::AddMeetings(const Receiver& receiver, ExactValue& value) const {
+  for (const Sweep::Meeting& meeting : sweep_.meetings()) {
+    const Curve &first = scene_.curve_of(meeting.first), &second = scene_.curve_of(meeting.second);
+    const EdgeErrors errors =
+        BoundErrors(meeting.edge, receiver.curvature, scene_.coordinate_error() + receiver.displaced);
+    for (int channel = 0; channel < kChannels; ++channel) {
+      const double size = std::max(first.radiance[channel], second.radiance[channel]);
+      value.irradiance_error[channel] += size * errors.s;
+      if (options_.derivatives >= 1) value.gradient_error[channel] += size * errors.s_first;
+      if (options_.derivatives >= 2) value.hessian_error[channel] += size * errors.s_second;
+    }
+  }
 }
 
 }  // namespace flatlight

@@ -73,6 +73,11 @@ class ExactSolver {
   template <int kChannels>
   void AddIntervals(const std::vector<VisibleInterval>& intervals, const std::vector<Part>& parts,
                     const Receiver& receiver, ExactValue& value) const;
+  // Whether an interval shows what is behind two ends that touch.
+  bool IsSlit(const std::vector<VisibleInterval>& intervals, std::size_t i, const std::vector<Part>& parts,
+              const Receiver& receiver) const;
+  template <int kChannels>
+  void AddMeetings(const Receiver& receiver, ExactValue& value) const;
 
   const Scene& scene_;
   ExactOptions options_;

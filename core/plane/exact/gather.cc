@@ -135,7 +135,7 @@ const SightBetween* Gatherer::See(const Bvh::Slot& slot, bool straight) {
   if (straight || scene_.element(element).kind == Element::Kind::kSegment) {
     if (has_own_ && slot.carrier == own_carrier_) return nullptr;
     SightBetween& next = envelope_.Next();
-    const Seen seen = SeeSegment(*receiver_, slot.a, slot.b, scene_.coordinate_error(), left_handed_, next);
+    const Seen seen = SeeSegment(scene_, *receiver_, slot.a, slot.b, left_handed_, next);
     next.sight.element = element;
     if (seen != Seen::kDoubt) return seen == Seen::kPart ? &next : nullptr;
   }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/math/tolerances.h"
+#include "core/plane/exact/touching.h"
 
 namespace flatlight {
 namespace {
@@ -31,6 +32,8 @@ class PartBuilder {
   Parts Build() {
     const bool own =
         receiver_.element != ElementId::kNone && scene_.element(receiver_.element).carrier == element_.carrier;
+    if (!own && MayTouch() && TouchesReceiver(scene_, element_, receiver_))
+      return TouchingParts(scene_, id_, receiver_);
     if (element_.kind == Element::Kind::kSegment) {
       if (!own) Add(Part::Kind::kStraight, VertexEdge(receiver_, element_.a), VertexEdge(receiver_, element_.b));
     } else if (own) {
@@ -42,6 +45,14 @@ class PartBuilder {
   }
 
  private:
+  // False where that is plain at little cost.
+  bool MayTouch() const {
+    if (element_.kind == Element::Kind::kSegment) return true;
+    const double touch = scene_.touch_distance();
+    return std::abs(CircleView(element_, receiver_.position).f) <=
+           2 * touch + 4 * scene_.coordinate_error() + touch * touch / element_.radius;
+  }
+
   // The receiver lies on the arc's circle: seen only from inside.
   void BuildOwnCircle() {
     if (Dot(receiver_.normal, element_.center - receiver_.position) < 0) return;
@@ -60,25 +71,25 @@ class PartBuilder {
     }
   }
 
-  bool IsOwnPlace(Point2 point) const { return Length(point - receiver_.position) <= 4 * scene_.coordinate_error(); }
+  bool IsOwnPlace(Point2 point) const { return Length(point - receiver_.position) <= scene_.touch_distance(); }
 
   // A point of the receiver's own circle: above the horizon by |d|^2/(2 r), however near it is.
   Edge OwnVertex(Point2 point) const {
     Edge edge = VertexEdge(receiver_, point);
-    edge.normal = LengthSquared(point - receiver_.position) / (2 * element_.radius);
+    const double squared = LengthSquared(point - receiver_.position);
+    edge.normal = squared / (2 * element_.radius);
     edge.c = edge.normal * edge.q;
+    // A short chord's direction is rounding, unlike its length.
+    if (edge.c < 0.5) {
+      edge.tangent = std::copysign(std::sqrt(squared - edge.normal * edge.normal), edge.tangent);
+      edge.s = edge.tangent * edge.q;
+    }
     edge.key = edge.tangent / (std::abs(edge.tangent) + edge.normal);
     return edge;
   }
 
   void BuildArc() {
-    CircleView view(element_, receiver_.position);
-    if (std::abs(view.f) < 4 * scene_.touch_distance() &&
-        Length(receiver_.position - element_.a) <= 2 * element_.length) {
-      // The circle passes through the receiver, where neither side is right: what counts is a little farther on.
-      receiver_.position = receiver_.position + kOnward * receiver_.tangent;
-      view = CircleView(element_, receiver_.position);
-    }
+    const CircleView view(element_, receiver_.position);
     const double orientation = element_.Orientation();
     // Which side each end shows. Arcs that share an end share these bits, so that no silhouette falls between them.
     const bool convex_a = ShowsConvexSide(element_.a, element_.radial_a);
@@ -160,7 +171,6 @@ class PartBuilder {
 
   bool Above(const Edge& edge) const {
     if (edge.kind == Edge::Kind::kHorizon) return true;
-    if (edge.kind == Edge::Kind::kVertex && IsOwnPlace(edge.point)) return false;
     const double reach = std::abs(edge.tangent) + std::abs(edge.normal);
     const double uncertain = 2 * scene_.coordinate_error() + 4 * kUnitRoundoff * reach;
     if (std::abs(edge.normal) > uncertain) return edge.normal > 0;
@@ -188,18 +198,13 @@ class PartBuilder {
     // Either may lie on the other side by the accuracy of the coordinates.
     const double height = std::max(0.0, above.normal), depth = std::max(0.0, -below.normal);
     const double share = height > 0 ? height / (height + depth) : 0;
-    const double crossing = above.tangent + share * (below.tangent - above.tangent);
-    // Through the receiver itself: as it moves on, the crossing falls behind.
-    return HorizonEdge(crossing > 4 * scene_.coordinate_error() ? 1 : -1);
+    return HorizonEdge(above.tangent + share * (below.tangent - above.tangent) > 0 ? 1 : -1);
   }
-
-  // How far the receiver is moved on from a circle that passes through it.
-  static constexpr double kOnward = 0x1p-40;
 
   const Scene& scene_;
   const ElementId id_;
   const Element& element_;
-  Receiver receiver_;
+  const Receiver& receiver_;
   Parts parts_;
 };
 
@@ -211,6 +216,7 @@ Parts PartsOf(const Scene& scene, ElementId element, const Receiver& receiver) {
 
 double DistanceAlong(const Element& element, const Part& part, const Receiver& receiver, double tangent,
                      double normal) {
+  if (part.touches && tangent < part.through * (std::abs(tangent) + normal)) return 0;
   const Vector2 direction = tangent * receiver.tangent + normal * receiver.normal;
   if (part.kind == Part::Kind::kStraight) {
     const Vector2 along = element.b - element.a;
@@ -222,7 +228,8 @@ double DistanceAlong(const Element& element, const Part& part, const Receiver& r
     const double t = denominator != 0 ? Cross(a, along) / denominator : 0.5 * (to_a + to_b);
     return std::clamp(t, std::min(to_a, to_b), std::max(to_a, to_b));
   }
-  const CircleView view(element, receiver.position);
+  CircleView view(element, receiver.position);
+  if (part.touches) view.f = 0;
   const double b = Dot(direction, view.v);
   // Half the chord, in radii; from far away by its offset from the centre, in which nothing cancels.
   const double power = 2 * view.f / element.radius;
@@ -230,6 +237,21 @@ double DistanceAlong(const Element& element, const Part& part, const Receiver& r
   const double root = std::sqrt(std::max(0.0, power > 1 ? (1 - offset) * (1 + offset) : b * b - power));
   if (part.kind == Part::Kind::kConvex) return 2 * view.f / (root - b);
   return b > 0 ? -2 * view.f / (b + root) : (root - b) * element.radius;
+}
+
+double DistanceDoubt(const Scene& scene, const Part& part, const Receiver& receiver, double tangent, double normal,
+                     double distance) {
+  // How far the ray is aside at the distance: by the slope; where the ray touches a circle, by the root.
+  const Element& element = scene.element(part.element);
+  const double aside = 16 * kUnitRoundoff * std::abs(distance) + 4 * scene.coordinate_error();
+  const Vector2 direction = tangent * receiver.tangent + normal * receiver.normal;
+  if (part.kind == Part::Kind::kStraight) {
+    const Vector2 along = element.b - element.a;
+    return aside * Length(along) / std::abs(Cross(direction, along));
+  }
+  const Vector2 radial = element.radial_a + ((receiver.position - element.a) + distance * direction) / element.radius;
+  const double incidence = std::abs(Dot(direction, radial)) / Length(radial);
+  return 2 * std::min(aside / incidence, std::sqrt(2 * aside * element.radius));
 }
 
 }  // namespace flatlight

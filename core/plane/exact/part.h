@@ -20,6 +20,12 @@ struct Part {
   ElementId element = ElementId::kNone;
   Edge first;  // In the direction of the element, from a to b.
   Edge last;
+  // Of an element that passes through the receiver (touching.h): at the directions from the horizon behind up to the
+  // key `through` it is there at distance 0. The one that reaches farther is nearer as the receiver moves on; of two
+  // that reach as far, the one that leans more toward where it moves.
+  bool touches = false;
+  double through = -1;
+  double lean = 0;
 };
 
 // The parts of one element: 2 for an arc cut at its silhouettes or at the receiver's foot point, at most 4.
@@ -33,6 +39,10 @@ Parts PartsOf(const Scene& scene, ElementId element, const Receiver& receiver);
 // Distance from the receiver to the part in a unit direction given by its components, which should meet the part; close
 // to it otherwise.
 double DistanceAlong(const Element& element, const Part& part, const Receiver& receiver, double tangent, double normal);
+
+// Bound on the error of that distance.
+double DistanceDoubt(const Scene& scene, const Part& part, const Receiver& receiver, double tangent, double normal,
+                     double distance);
 
 }  // namespace flatlight
 

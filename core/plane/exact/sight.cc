@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kRoundoffs = 8 * kUnitRoundoff;
 
+// How far from each other ends may be that touch, to rounding.
+double EndDoubt(const Scene& scene) { return std::max(6 * scene.coordinate_error(), 2 * scene.touch_distance()); }
+
 struct Local {
   double tangent, normal;
   Local(double t, double n) : tangent(t), normal(n) {}
@@ -21,11 +24,11 @@ struct Local {
   double Reach() const { return std::abs(tangent) + std::abs(normal); }
 };
 
-void SetVertex(const Local& local, Point2 point, double coordinate_error, SightEnd& end) {
+void SetVertex(const Local& local, Point2 point, double doubt, SightEnd& end) {
   const double inverse = 1 / local.Reach();
   end.tangent = local.tangent, end.normal = local.normal;
   end.key = local.tangent * inverse;
-  end.uncertain = 6 * coordinate_error * inverse + 2 * kRoundoffs;
+  end.uncertain = doubt * inverse + 2 * kRoundoffs;
   end.point = point;
   end.kind = SightEnd::Kind::kVertex;
 }
@@ -72,11 +75,12 @@ inline void SetLine(const Local& a, const Local& b, const Local& along, double a
 
 }  // namespace
 
-Seen SeeSegment(const Receiver& receiver, Point2 a, Point2 b, double coordinate_error, bool left_handed,
+Seen SeeSegment(const Scene& scene, const Receiver& receiver, Point2 a, Point2 b, bool left_handed,
                 SightBetween& seen) {
+  const double coordinate_error = scene.coordinate_error(), touch = scene.touch_distance();
   Local low(receiver, a), high(receiver, b);
-  const double doubt_low = 8 * coordinate_error + kRoundoffs * low.Reach();
-  const double doubt_high = 8 * coordinate_error + kRoundoffs * high.Reach();
+  const double doubt_low = touch + 8 * coordinate_error + kRoundoffs * low.Reach();
+  const double doubt_high = touch + 8 * coordinate_error + kRoundoffs * high.Reach();
   if (low.normal < -doubt_low && high.normal < -doubt_high) return Seen::kNothing;
   if (std::abs(low.normal) <= doubt_low || std::abs(high.normal) <= doubt_high) return Seen::kDoubt;
   Local along = Between(receiver, a, b);
@@ -91,18 +95,19 @@ Seen SeeSegment(const Receiver& receiver, Point2 a, Point2 b, double coordinate_
   Sight& sight = seen.sight;
   SetLine(low, high, along, area, coordinate_error, sight);
   // Edge-on, or through the receiver.
-  if (!(sight.area > 4 * sight.area_doubt)) return Seen::kDoubt;
+  if (!(sight.area > 4 * sight.area_doubt + touch * along.Reach())) return Seen::kDoubt;
   // A part that runs along theta runs clockwise around a receiver whose tangent is on its normal's right, and has it on
   // its right.
   sight.front = forward == left_handed;
   sight.part = nullptr;
+  const double doubt = EndDoubt(scene);
   if (low.normal > 0) {
-    SetVertex(low, a, coordinate_error, seen.low);
+    SetVertex(low, a, doubt, seen.low);
   } else {
     SetHorizon(-1, seen.low);
   }
   if (high.normal > 0) {
-    SetVertex(high, b, coordinate_error, seen.high);
+    SetVertex(high, b, doubt, seen.high);
   } else {
     SetHorizon(1, seen.high);
   }
@@ -114,7 +119,7 @@ Seen SeePart(const Scene& scene, const Receiver& receiver, const Part& part, boo
   const double coordinate_error = scene.coordinate_error();
   const auto set = [&](const Edge& edge, SightEnd& end) {
     end.tangent = edge.tangent, end.normal = edge.normal, end.key = edge.key;
-    end.uncertain = edge.kind == Edge::Kind::kHorizon ? 0 : 6 * coordinate_error * edge.q + 2 * kRoundoffs;
+    end.uncertain = edge.kind == Edge::Kind::kHorizon ? 0 : EndDoubt(scene) * edge.q + 2 * kRoundoffs;
     end.edge = &edge;
     end.kind = edge.kind == Edge::Kind::kHorizon ? SightEnd::Kind::kHorizon : SightEnd::Kind::kEdge;
   };
@@ -140,7 +145,12 @@ Seen SeePart(const Scene& scene, const Receiver& receiver, const Part& part, boo
     const double near = std::max(0.0, std::sqrt(sight.near_squared) * (1 - kRoundoffs) - bulge);
     const double far = std::sqrt(sight.far_squared) + bulge;
     sight.near_squared = near * near, sight.far_squared = far * far;
-  } else if (!(sight.area > 4 * sight.area_doubt)) {
+  }
+  if (part.touches) {
+    sight.near_squared = 0;
+    return Seen::kDoubt;
+  }
+  if (part.kind == Part::Kind::kStraight && !(sight.area > 4 * sight.area_doubt)) {
     return Seen::kDoubt;
   }
   return seen.high.key - seen.low.key > 2 * (seen.low.uncertain + seen.high.uncertain) ? Seen::kPart : Seen::kDoubt;

@@ -65,8 +65,7 @@ enum class Seen {
 };
 
 // A segment that the receiver does not lie on.
-Seen SeeSegment(const Receiver& receiver, Point2 a, Point2 b, double coordinate_error, bool left_handed,
-                SightBetween& seen);
+Seen SeeSegment(const Scene& scene, const Receiver& receiver, Point2 a, Point2 b, bool left_handed, SightBetween& seen);
 
 // A part in full. It must outlive the sight. kDoubt if it is seen edge-on.
 Seen SeePart(const Scene& scene, const Receiver& receiver, const Part& part, bool left_handed, SightBetween& seen);

@@ -6,26 +6,25 @@
 #include <limits>
 
 #include "core/math/tolerances.h"
+#include "core/plane/exact/meeting.h"
 #include "core/plane/intersect.h"
 
 namespace flatlight {
 namespace {
 
-// Two distances that differ by less are equal: curves that touch.
-bool Nearer(double r1, double r2, double coordinate_error) {
-  return r1 < r2 - 32 * kUnitRoundoff * r2 - 8 * coordinate_error;
-}
-
-// Distances that agree to this, relative, may be those of curves that meet; they are compared again so far aside (a
-// key).
-constexpr double kTie = 1e-11;
+// Distances that agree to this, relative, are compared with bounds on their errors. Those that agree to these bounds
+// may be those of curves that meet; they are compared again so far aside (a key).
+constexpr double kClose = 1e-3;
 constexpr double kAside = 1e-8;
+
+// Ends of parts are one place to this, relative.
+constexpr double kTie = 1e-11;
 
 // How much nearer, relative, hides for certain: near a silhouette a distance is uncertain by the root of the rounding.
 constexpr double kBehind = 1e-6;
 
-// How far the receiver is moved on to tell curves apart that pass through it.
-constexpr double kOnward = 0x1p-40;
+// Keys of directions that may be one.
+constexpr double kSameKey = 1e-13;
 
 constexpr int kMaxDepth = 40;
 
@@ -36,6 +35,7 @@ const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, c
   receiver_ = &receiver;
   left_handed_ = Cross(receiver.tangent, receiver.normal) < 0;
   visible_.clear();
+  meetings_.clear();
   active_.clear();
   breaks_.clear();
   for (std::uint32_t p = 0; p < parts.size(); ++p) {
@@ -80,6 +80,7 @@ const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, c
 }
 
 double Sweep::Uncertainty(const Edge& edge) const {
+  if (edge.kind == Edge::Kind::kTouch) return edge.turn;
   return edge.kind == Edge::Kind::kHorizon ? 0 : 2 * scene_.coordinate_error() * edge.q + 4 * kUnitRoundoff;
 }
 
@@ -119,6 +120,17 @@ double Sweep::DistanceOf(std::uint32_t part, double key) const {
   return DistanceAlong(scene_.element(p.element), p, *receiver_, direction.tangent, direction.normal);
 }
 
+double Sweep::DoubtOf(std::uint32_t part, double key, double distance) const {
+  const UnitDirection direction(key);
+  return DistanceDoubt(scene_, (*parts_)[part], *receiver_, direction.tangent, direction.normal, distance);
+}
+
+bool Sweep::MayMeet(std::uint32_t p, double distance, std::uint32_t other, double other_distance, double key) const {
+  const double difference = std::abs(distance - other_distance);
+  if (difference > kClose * (distance + other_distance) + 64 * scene_.coordinate_error()) return false;
+  return !(difference > DoubtOf(p, key, distance) + DoubtOf(other, key, other_distance));
+}
+
 bool Sweep::IsEdgeOn(const Part& part) const {
   return part.first.kind != Edge::Kind::kHorizon && part.last.kind != Edge::Kind::kHorizon &&
          std::abs(part.first.key - part.last.key) <= Uncertainty(part.first) + Uncertainty(part.last);
@@ -130,12 +142,12 @@ std::int32_t Sweep::Nearest(double key, EdgeOn edge_on) const {
   for (const std::uint32_t p : active_) {
     if (edge_on == EdgeOn::kLeaveOut && IsEdgeOn((*parts_)[p])) continue;
     const double distance = DistanceOf(p, key);
-    bool nearer = nearest == VisibleInterval::kNothing || distance < best * (1 - kTie);
+    bool nearer = nearest == VisibleInterval::kNothing || distance < best;
     if (nearest != VisibleInterval::kNothing) {
       const auto other = static_cast<std::uint32_t>(nearest);
-      if (std::max(distance, best) <= 8 * scene_.coordinate_error()) {
-        nearer = InFrontOnward(p, other, key);
-      } else if (!nearer && distance < best * (1 + kTie)) {
+      if (std::max(distance, best) == 0) {
+        nearer = InFrontOnward(p, other);
+      } else if (MayMeet(p, distance, other, best, key)) {
         nearer = InFront(p, other, key, distance);
       }
     }
@@ -188,41 +200,75 @@ bool Sweep::InFront(std::uint32_t p, std::uint32_t other, double key, double dis
   return r1 != r2 ? r1 < r2 : (*parts_)[p].element < (*parts_)[other].element;
 }
 
-bool Sweep::InFrontOnward(std::uint32_t p, std::uint32_t other, double key) const {
-  Receiver onward = *receiver_;
-  onward.position = onward.position + kOnward * onward.tangent;
-  const UnitDirection direction(key);
-  const auto distance_of = [&](std::uint32_t index) {
-    const Part& part = (*parts_)[index];
-    return DistanceAlong(scene_.element(part.element), part, onward, direction.tangent, direction.normal);
-  };
-  const double r1 = distance_of(p), r2 = distance_of(other);
-  return r1 != r2 ? r1 < r2 : (*parts_)[p].element < (*parts_)[other].element;
+bool Sweep::InFrontOnward(std::uint32_t p, std::uint32_t other) const {
+  const Part &part = (*parts_)[p], &beside = (*parts_)[other];
+  if (std::abs(part.through - beside.through) > kSameKey) return part.through > beside.through;
+  return part.lean != beside.lean ? part.lean > beside.lean : part.element < beside.element;
 }
 
 void Sweep::Resolve(const Edge& from, const Edge& to, int depth) {
   const std::int32_t nearest = Nearest(0.5 * (from.key + to.key), EdgeOn::kCount);
   if (active_.size() > 1 && depth < kMaxDepth) {
-    // Straight parts cross once at most: another one is in front somewhere only if it is at an end.
-    for (const double key : {from.key, to.key}) {
-      std::int32_t front = nearest;
-      double best = DistanceOf(static_cast<std::uint32_t>(nearest), key);
-      for (const std::uint32_t p : active_) {
-        const double distance = DistanceOf(p, key);
-        if (Nearer(distance, best, scene_.coordinate_error())) best = distance, front = static_cast<std::int32_t>(p);
-      }
-      if (front == nearest) continue;
-      crossings_.clear();
-      AddCrossings(static_cast<std::uint32_t>(nearest), static_cast<std::uint32_t>(front), from.key, to.key,
-                   crossings_);
-      if (crossings_.empty()) continue;
-      const Edge crossing = crossings_.front();
+    for (const Edge* at : {&from, &to}) {
+      Edge crossing;
+      if (!FindCrossing(static_cast<std::uint32_t>(nearest), from, to, *at, crossing)) continue;
       Resolve(from, crossing, depth + 1);
       Resolve(crossing, to, depth + 1);
       return;
     }
   }
+  if (active_.size() > 1) AddTangencies(static_cast<std::uint32_t>(nearest), from.key, to.key);
   Emit(from, nearest);
+}
+
+void Sweep::AddTangencies(std::uint32_t nearest, double low, double high) {
+  const Element& element = scene_.element((*parts_)[nearest].element);
+  for (const std::uint32_t p : active_) {
+    if (p == nearest) continue;
+    const Element& other = scene_.element((*parts_)[p].element);
+    if (element.kind == Element::Kind::kSegment && other.kind == Element::Kind::kSegment) continue;
+    const Tangencies tangencies = FindTangencies(scene_, element, other);
+    for (int i = 0; i < tangencies.count; ++i) {
+      // Where they touch at the receiver's own place they are told apart by their curvature.
+      if (Length(tangencies.place[i] - receiver_->position) <= 2 * scene_.touch_distance()) continue;
+      Edge edge = VertexEdge(*receiver_, tangencies.place[i]);
+      AddMeetingError(scene_, *receiver_, element, other, edge);
+      if (MayLieBetween(edge, low, high)) meetings_.push_back({edge, (*parts_)[nearest].element, (*parts_)[p].element});
+    }
+  }
+}
+
+bool Sweep::FindCrossing(std::uint32_t nearest, const Edge& from, const Edge& to, const Edge& at, Edge& crossing) {
+  const double distance = DistanceOf(nearest, at.key);
+  double best = distance;
+  bool found = false;
+  for (const std::uint32_t p : active_) {
+    if (p == nearest) continue;
+    const double other = DistanceOf(p, at.key);
+    const bool meets = MayMeet(p, other, nearest, distance, at.key);
+    if (!meets && !(other < best)) continue;
+    // Straight parts cross once at most: another one is in front somewhere only if it is at an end.
+    crossings_.clear();
+    AddCrossings(nearest, p, from.key, to.key, crossings_);
+    if (meets && crossings_.empty()) AddMeeting(nearest, p, at);
+    if (!meets && !crossings_.empty()) best = other;
+    if (crossings_.empty()) continue;
+    crossing = crossings_.front();
+    found = true;
+    AddMeeting(nearest, p, crossing);
+  }
+  return found;
+}
+
+void Sweep::AddMeeting(std::uint32_t p, std::uint32_t other, const Edge& edge) {
+  if (edge.kind == Edge::Kind::kHorizon) return;
+  const ElementId first = (*parts_)[p].element, second = (*parts_)[other].element;
+  const Element &e = scene_.element(first), &f = scene_.element(second);
+  if (e.carrier == f.carrier || ShareEnd(e, f, edge.point)) return;
+  Meeting meeting{edge, first, second};
+  meeting.edge.turn = meeting.edge.stretch = 0;
+  AddMeetingError(scene_, *receiver_, e, f, meeting.edge);
+  if (meeting.edge.turn > 0) meetings_.push_back(meeting);
 }
 
 void Sweep::FindArcCrossings(double low, double high) {
@@ -242,11 +288,17 @@ void Sweep::AddCrossings(std::uint32_t first, std::uint32_t second, double low, 
   const Element& e = scene_.element((*parts_)[first].element);
   const Element& f = scene_.element((*parts_)[second].element);
   if (e.carrier == f.carrier) return;
+  const bool both_touch = (*parts_)[first].touches && (*parts_)[second].touches;
   const ElementCrossings points = CrossElements(e, f, scene_.touch_distance());
   for (int i = 0; i < points.count; ++i) {
-    const Edge edge = VertexEdge(*receiver_, points.point[i]);
+    if (Length(points.point[i] - receiver_->position) <= 2 * scene_.touch_distance()) continue;
+    Edge edge = VertexEdge(*receiver_, points.point[i]);
     const double uncertain = Uncertainty(edge);
-    if (edge.normal > 0 && edge.key > low + uncertain && edge.key < high - uncertain) crossings.push_back(edge);
+    if (!(edge.normal > 0 && edge.key > low + uncertain && edge.key < high - uncertain)) continue;
+    AddMeetingError(scene_, *receiver_, e, f, edge);
+    // The place where both pass through the receiver is in no direction.
+    if (both_touch && 1 < 8 * (edge.stretch + scene_.touch_distance() * edge.q)) continue;
+    crossings.push_back(edge);
   }
 }
 
@@ -278,14 +330,23 @@ Edge Sweep::BreakBetween(const Edge& from, std::int32_t part) const {
     };
     return near(p.first) || near(p.last);
   };
-  if (from.kind == Edge::Kind::kHorizon || ends_here(before, part) || ends_here(part, before)) return from;
+  if (from.kind == Edge::Kind::kHorizon || from.kind == Edge::Kind::kTouch) return from;
   const Element& e = scene_.element((*parts_)[static_cast<std::size_t>(before)].element);
   const Element& f = scene_.element((*parts_)[static_cast<std::size_t>(part)].element);
-  if (e.carrier == f.carrier) return from;
+  if (e.carrier == f.carrier || ShareEnd(e, f, from.point)) return from;
+  if (ends_here(before, part) || ends_here(part, before)) {
+    Edge edge = from;
+    const auto p = static_cast<std::uint32_t>(before), q = static_cast<std::uint32_t>(part);
+    if (edge.turn == 0 && MayMeet(p, DistanceOf(p, from.key), q, DistanceOf(q, from.key), from.key))
+      AddMeetingError(scene_, *receiver_, e, f, edge);
+    return edge;
+  }
   const ElementCrossings points = CrossElements(e, f, scene_.touch_distance());
   for (int i = 0; i < points.count; ++i) {
-    const Edge edge = VertexEdge(*receiver_, points.point[i]);
-    if (edge.normal > 0 && std::abs(edge.key - from.key) <= 4 * (Uncertainty(edge) + Uncertainty(from))) return edge;
+    Edge edge = VertexEdge(*receiver_, points.point[i]);
+    if (!(edge.normal > 0 && std::abs(edge.key - from.key) <= 4 * (Uncertainty(edge) + Uncertainty(from)))) continue;
+    AddMeetingError(scene_, *receiver_, e, f, edge);
+    return edge;
   }
   return from;
 }

@@ -30,6 +30,14 @@ class Sweep {
   // In the order of theta; the last interval sees nothing. Valid until the next call.
   const std::vector<VisibleInterval>& Run(const std::vector<Part>& parts, const Receiver& receiver);
 
+  // Where two parts meet so that rounding decides which is seen, for as far as the edge's errors say. Of the last run.
+  struct Meeting {
+    Edge edge;
+    ElementId first;
+    ElementId second;
+  };
+  const std::vector<Meeting>& meetings() const { return meetings_; }
+
  private:
   struct Break {
     const Edge* edge;
@@ -47,8 +55,17 @@ class Sweep {
   void ResolveCoinciding(const Edge& from, const Edge& to);
   bool InFront(std::uint32_t p, std::uint32_t other, double key, double distance) const;
   // The same of parts that pass through the receiver: which one is nearer as it moves on.
-  bool InFrontOnward(std::uint32_t p, std::uint32_t other, double key) const;
+  bool InFrontOnward(std::uint32_t p, std::uint32_t other) const;
   double DistanceOf(std::uint32_t part, double key) const;
+  double DoubtOf(std::uint32_t part, double key, double distance) const;
+  // Whether two distances in one direction may be those of curves that meet there.
+  bool MayMeet(std::uint32_t p, double distance, std::uint32_t other, double other_distance, double key) const;
+  // Looks for the place where another active part comes before `nearest` or meets it, seen from the direction of one of
+  // the two edges between which that one is nearest in the middle.
+  bool FindCrossing(std::uint32_t nearest, const Edge& from, const Edge& to, const Edge& at, Edge& crossing);
+  void AddMeeting(std::uint32_t p, std::uint32_t other, const Edge& edge);
+  // Of the nearest part with others, seen between two keys.
+  void AddTangencies(std::uint32_t nearest, double low, double high);
   // How far an edge's key may be off.
   double Uncertainty(const Edge& edge) const;
   void Emit(const Edge& from, std::int32_t part);
@@ -70,6 +87,7 @@ class Sweep {
   std::vector<Edge> arc_crossings_;
   std::vector<Edge> crossings_;
   std::vector<VisibleInterval> visible_;
+  std::vector<Meeting> meetings_;
 };
 
 }  // namespace flatlight

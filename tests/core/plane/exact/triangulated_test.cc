@@ -6,12 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 
 #include "core/plane/bvh.h"
 #include "core/plane/exact/exact.h"
 #include "core/plane/triangulation/triangulation.h"
+#include "core/scene/element_frame.h"
 #include "core/scene/scene.h"
 #include "tests/core/plane/exact/oracle.h"
 #include "tests/core/plane/exact/test_scenes.h"
@@ -22,23 +24,51 @@ namespace {
 struct Outcome {
   int points = 0;
   int undecided = 0;
-  int equal = 0;  // Bit by bit, but for the bounds.
+  int smaller = 0;    // Points with a smaller bound than the tree's.
+  int confirmed = 0;  // Of those, by the oracle.
+  int equal = 0;      // Bit by bit, but for the bounds.
 };
 
-void Compare(const Scene& scene, Outcome& outcome, const std::string& what) {
+// Where the triangles' bound is the smaller one (the tree doubts more crossings), the oracle must agree with it.
+void ConfirmBound(const Oracle& oracle, const Scene& scene, const Probe& probe, std::size_t i, const ExactValue& value,
+                  Outcome& outcome, const std::string& what) {
+  const Receiver& receiver = probe.receivers[i];
+  std::optional<OracleValue> truth;
+  if (probe.curve == CurveId::kNone) {
+    truth = oracle.AtPoint(scene.ToWorld(receiver.position), receiver.normal);
+  } else {
+    const bool front = Dot(receiver.normal, FrontNormal(scene.element(receiver.element), receiver.position)) > 0;
+    truth = oracle.OnCurve(static_cast<std::size_t>(probe.curve),
+                           (static_cast<double>(i) + 0.5) / static_cast<double>(probe.receivers.size()),
+                           front ? Side::kFront : Side::kBack);
+  }
+  if (!truth) return;
+  ++outcome.confirmed;
+  const double l = scene.frame().radiance_scale;
+  ASSERT_NEAR(value.irradiance[0] * l, truth->irradiance, value.irradiance_error[0] * l + 1e-15 * truth->size) << what;
+}
+
+void Compare(const SceneDescription& description, Outcome& outcome, const std::string& what) {
+  const auto built = Build(description);
+  const Scene& scene = *built;
+  const Oracle oracle(description);
   const auto triangulation = Triangulation::Of(scene);
   ASSERT_TRUE(triangulation) << what;
   const Bvh bvh(scene);
   ExactSolver tree(scene, bvh, {});
   ExactSolver triangles(scene, bvh, {}, triangulation.get());
   for (const Probe& probe : scene.probes()) {
-    for (const Receiver& receiver : probe.receivers) {
+    for (std::size_t i = 0; i < probe.receivers.size(); ++i) {
+      const Receiver& receiver = probe.receivers[i];
       const ExactValue a = tree.Evaluate(receiver), b = triangles.Evaluate(receiver);
       for (int c = 0; c < scene.channels(); ++c) {
         ASSERT_NEAR(a.irradiance[c], b.irradiance[c], a.irradiance_error[c] + b.irradiance_error[c]) << what;
         ASSERT_NEAR(a.gradient[c], b.gradient[c], a.gradient_error[c] + b.gradient_error[c]) << what;
         ASSERT_NEAR(a.hessian[c], b.hessian[c], a.hessian_error[c] + b.hessian_error[c]) << what;
-        ASSERT_GE(b.irradiance_error[c], a.irradiance_error[c]) << what;
+      }
+      if (b.irradiance_error[0] < a.irradiance_error[0]) {
+        // The oracle is slow: some of them.
+        if (outcome.smaller++ % 20 == 0) ConfirmBound(oracle, scene, probe, i, b, outcome, what);
       }
       ++outcome.points;
       outcome.equal += a.irradiance == b.irradiance && a.gradient == b.gradient && a.hessian == b.hessian ? 1 : 0;
@@ -66,7 +96,7 @@ TEST(TriangulatedTest, CurvesThatCrossShowTheSame) {
       AddProbe(scene, curve, 20, Side::kBack);
     }
     AddFreePoints(scene, random, 300);
-    Compare(*Build(scene), outcome, "round " + std::to_string(round));
+    Compare(scene, outcome, "round " + std::to_string(round));
     if (HasFatalFailure()) return;
   }
   EXPECT_EQ(outcome.points, 60 * 500);
@@ -97,9 +127,10 @@ TEST(TriangulatedTest, WallsThatMeetToRoundingAreNative) {
     AddProbe(scene, 1, 100);
     for (std::size_t wall = 2; wall < 8; ++wall) AddProbe(scene, wall, 20, wall % 2 == 0 ? Side::kFront : Side::kBack);
     AddFreePoints(scene, random, 100);
-    Compare(*Build(scene), outcome, "round " + std::to_string(round));
+    Compare(scene, outcome, "round " + std::to_string(round));
     if (HasFatalFailure()) return;
   }
+  EXPECT_GT(outcome.confirmed, 0);
   EXPECT_LT(outcome.undecided, outcome.points / 200);
   EXPECT_GT(outcome.equal, outcome.points * 99 / 100);
 }
@@ -122,9 +153,10 @@ TEST(TriangulatedTest, EventsAreLeftToTheTree) {
     for (int i = 0; i < 40; ++i)
       free.points.push_back({place() + Vector2{1.0 / 32, 1.0 / 64}, {static_cast<double>(random() % 5) - 2, 1}});
     scene.probes.push_back(free);
-    Compare(*Build(scene), outcome, "round " + std::to_string(round));
+    Compare(scene, outcome, "round " + std::to_string(round));
     if (HasFatalFailure()) return;
   }
+  EXPECT_GT(outcome.confirmed, 0);
   EXPECT_GT(outcome.undecided, outcome.points / 1000);
   EXPECT_LT(outcome.undecided, outcome.points / 4);
 }
@@ -137,7 +169,7 @@ TEST(TriangulatedTest, DirectionsThatCoincideAreUndecided) {
     AddCurve(scene, SegmentDescription{{0.25, 0.25}, {0.5, 0.125}});
     AddCurve(scene, SegmentDescription{{0.5 + off, 0.5}, {0.125, 0.75}});
     Outcome outcome;
-    Compare(*Build(WithFreePoint(scene, {0, 0})), outcome, std::to_string(off));
+    Compare(WithFreePoint(scene, {0, 0}), outcome, std::to_string(off));
     EXPECT_EQ(outcome.undecided, std::abs(off) < 0x1p-50 ? 1 : 0) << off;
   }
 }
@@ -152,7 +184,7 @@ TEST(TriangulatedTest, ColoursAreTheSame) {
   }
   AddFreePoints(scene, random, 200);
   Outcome outcome;
-  Compare(*Build(scene), outcome, "colours");
+  Compare(scene, outcome, "colours");
   EXPECT_EQ(outcome.equal, outcome.points);
 }
 
@@ -166,7 +198,7 @@ TEST(TriangulatedTest, TheEnvironmentShinesBetweenTheWalls) {
     AddProbe(scene, 0, 20, Side::kFront);
     AddProbe(scene, 1, 20, Side::kBack);
     AddFreePoints(scene, random, 60);
-    Compare(*Build(scene), outcome, "round " + std::to_string(round));
+    Compare(scene, outcome, "round " + std::to_string(round));
     if (HasFatalFailure()) return;
   }
   EXPECT_EQ(outcome.undecided, 0);
@@ -185,7 +217,7 @@ TEST(TriangulatedTest, ManyBeamsAreLeftToTheTree) {
   }
   AddCurve(scene, SegmentDescription{{1.1, 1}, {-1.1, 1}}, 1);
   Outcome outcome;
-  Compare(*Build(WithFreePoint(scene, {0.0001, 0})), outcome, "grate");
+  Compare(WithFreePoint(scene, {0.0001, 0}), outcome, "grate");
   EXPECT_EQ(outcome.undecided, 1);
 }
 
@@ -235,7 +267,8 @@ TEST(TriangulatedTest, ScalesAndPlacesAgreeWithTheOracle) {
           EXPECT_NEAR(v.hessian * scale * scale, truth->hessian * scale * scale,
                       v.hessian_error * scale * scale + 1e-9 * (1 + truth->size))
               << where;
-          EXPECT_NEAR(v.irradiance, tree.irradiance, v.irradiance_error + tree.irradiance_error) << where;
+          // The tree closes that slit.
+          EXPECT_NEAR(v.irradiance, tree.irradiance, v.irradiance_error + tree.irradiance_error + slit) << where;
         }
       }
       EXPECT_GT(compared, 12) << scale << " " << away;
@@ -255,7 +288,7 @@ TEST(TriangulatedTest, PointsOnEdgesOfTheTriangulationAreNative) {
   }
   scene.probes.push_back(free);
   Outcome outcome;
-  Compare(*Build(scene), outcome, "diagonals");
+  Compare(scene, outcome, "diagonals");
   EXPECT_EQ(outcome.undecided, 0);
   EXPECT_EQ(outcome.equal, outcome.points);
 }
