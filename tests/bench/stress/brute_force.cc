@@ -36,7 +36,8 @@ class Breaks {
       : scene_(scene),
         receiver_(receiver),
         error_(2 * (scene.touch_distance() + scene.coordinate_error() + disturbance.position)),
-        turn_(disturbance.direction + 8 * kUnitRoundoff) {
+        turn_(disturbance.direction + 8 * kUnitRoundoff),
+        disturbed_(disturbance.position > 0) {
     breaks_ = {{-kHalfPi, turn_, {}}, {kHalfPi, turn_, {}}};
     const std::vector<Element>& elements = scene.elements();
     for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -87,7 +88,8 @@ class Breaks {
       const double across = error_ + gap;
       double move = std::min(sine > 0 ? across / sine : 1, Overlap(e, f, Right(normal)));
       if (bend > 0) move = std::min(move, 2 * std::sqrt(across / bend));
-      Add(place, move + error_, move > 64 * error_);
+      // Disturbed, an end that lies on a curve may come out in front of it.
+      Add(place, move + error_, disturbed_ || move > 64 * error_);
     };
     const ElementCrossings common = CrossElements(e, f, 4 * scene_.touch_distance());
     for (int k = 0; k < common.count; ++k) add(common.point[k], 0);
@@ -116,6 +118,7 @@ class Breaks {
   const Receiver& receiver_;
   const double error_;
   const double turn_;
+  const bool disturbed_;
   std::vector<Break> breaks_;
 };
 

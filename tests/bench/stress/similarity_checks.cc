@@ -71,7 +71,9 @@ bool IsAmbiguous(const Built& built, std::size_t i, double rounding, bool revers
       if (std::min(Length(element.a - receiver.position), Length(element.b - receiver.position)) < near) return true;
     }
   }
-  if (Clearance(*built.scene, receiver) < near && (receiver.element == ElementId::kNone || reversed)) return true;
+  const double clearance = Clearance(*built.scene, receiver);
+  if (rounding > 0 && clearance < 16 * rounding / built.scene->frame().scale) return true;
+  if (clearance < near && (receiver.element == ElementId::kNone || reversed)) return true;
   return !MovedOnward(built, receiver).clear;
 }
 
