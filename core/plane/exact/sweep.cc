@@ -26,7 +26,8 @@ constexpr double kBehind = 1e-6;
 // Keys of directions that may be one.
 constexpr double kSameKey = 1e-13;
 
-constexpr int kMaxDepth = 40;
+// Each piece that is seen splits an interval once, and halves it at every other one.
+constexpr int kMaxDepth = 128;
 
 }  // namespace
 
@@ -37,7 +38,9 @@ const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, c
   visible_.clear();
   meetings_.clear();
   active_.clear();
+  active_arcs_.clear();
   breaks_.clear();
+  far_filter_.Start(parts, receiver);
   for (std::uint32_t p = 0; p < parts.size(); ++p) {
     for (const Edge* edge : {&parts[p].first, &parts[p].last}) {
       breaks_.push_back({edge, p, Uncertainty(*edge)});
@@ -52,10 +55,13 @@ const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, c
   }
   for (std::uint32_t i = 0; i + 1 < breaks_.size(); ++i) {
     const std::uint32_t p = breaks_[i].part;
+    const bool arc = parts[p].kind != Part::Kind::kStraight;
     if (i == std::min(first_rank_[p], last_rank_[p])) {
       active_.push_back(p);
+      if (arc) active_arcs_.push_back(p);
     } else {
       active_.erase(std::find(active_.begin(), active_.end(), p));
+      if (arc) active_arcs_.erase(std::find(active_arcs_.begin(), active_arcs_.end(), p));
     }
     const Break& here = breaks_[i];
     const Break& next = breaks_[i + 1];
@@ -66,13 +72,7 @@ const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, c
     } else if (next.edge->key - here.edge->key <= here.uncertain + next.uncertain) {
       ResolveCoinciding(*here.edge, *next.edge);
     } else {
-      FindArcCrossings(here.edge->key, next.edge->key);
-      Edge from = *here.edge;
-      for (const Edge& to : arc_crossings_) {
-        Resolve(from, to, 0);
-        from = to;
-      }
-      Resolve(from, *next.edge, 0);
+      Resolve(*here.edge, *next.edge, 0);
     }
   }
   if (!breaks_.empty()) Emit(*breaks_.back().edge, VisibleInterval::kNothing);
@@ -136,10 +136,10 @@ bool Sweep::IsEdgeOn(const Part& part) const {
          std::abs(part.first.key - part.last.key) <= Uncertainty(part.first) + Uncertainty(part.last);
 }
 
-std::int32_t Sweep::Nearest(double key, EdgeOn edge_on) const {
+std::int32_t Sweep::Nearest(double key, EdgeOn edge_on) {
   std::int32_t nearest = VisibleInterval::kNothing;
   double best = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t p : active_) {
+  for (const std::uint32_t p : far_filter_.NotFar(active_, key, kClose)) {
     if (edge_on == EdgeOn::kLeaveOut && IsEdgeOn((*parts_)[p])) continue;
     const double distance = DistanceOf(p, key);
     bool nearer = nearest == VisibleInterval::kNothing || distance < best;
@@ -162,7 +162,7 @@ void Sweep::ResolveCoinciding(const Edge& from, const Edge& to) {
   const double key = 0.5 * (from.key + to.key);
   const std::int32_t other = Nearest(key, EdgeOn::kLeaveOut);
   std::int32_t edge_on = VisibleInterval::kNothing;
-  for (const std::uint32_t p : active_)
+  for (const std::uint32_t p : far_filter_.NotFar(active_, key, kClose))
     if (IsEdgeOn((*parts_)[p])) edge_on = static_cast<std::int32_t>(p);
   if (edge_on == VisibleInterval::kNothing) return Emit(from, other);
   // Coinciding edges come in the order of their distance, and between two of them a piece seen edge-on recedes from the
@@ -207,11 +207,13 @@ bool Sweep::InFrontOnward(std::uint32_t p, std::uint32_t other) const {
 }
 
 void Sweep::Resolve(const Edge& from, const Edge& to, int depth) {
-  const std::int32_t nearest = Nearest(0.5 * (from.key + to.key), EdgeOn::kCount);
+  const double middle = 0.5 * (from.key + to.key);
+  const std::int32_t nearest = Nearest(middle, EdgeOn::kCount);
   if (active_.size() > 1 && depth < kMaxDepth) {
-    for (const Edge* at : {&from, &to}) {
-      Edge crossing;
-      if (!FindCrossing(static_cast<std::uint32_t>(nearest), from, to, *at, crossing)) continue;
+    const auto p = static_cast<std::uint32_t>(nearest);
+    Edge crossing;
+    if (FindArcCrossing(p, from.key, to.key, middle, crossing) || FindCrossing(p, from, to, from, crossing) ||
+        FindCrossing(p, from, to, to, crossing)) {
       Resolve(from, crossing, depth + 1);
       Resolve(crossing, to, depth + 1);
       return;
@@ -223,10 +225,9 @@ void Sweep::Resolve(const Edge& from, const Edge& to, int depth) {
 
 void Sweep::AddTangencies(std::uint32_t nearest, double low, double high) {
   const Element& element = scene_.element((*parts_)[nearest].element);
-  for (const std::uint32_t p : active_) {
+  for (const std::uint32_t p : element.kind == Element::Kind::kSegment ? active_arcs_ : active_) {
     if (p == nearest) continue;
     const Element& other = scene_.element((*parts_)[p].element);
-    if (element.kind == Element::Kind::kSegment && other.kind == Element::Kind::kSegment) continue;
     const Tangencies tangencies = FindTangencies(scene_, element, other);
     for (int i = 0; i < tangencies.count; ++i) {
       // Where they touch at the receiver's own place they are told apart by their curvature.
@@ -242,7 +243,7 @@ bool Sweep::FindCrossing(std::uint32_t nearest, const Edge& from, const Edge& to
   const double distance = DistanceOf(nearest, at.key);
   double best = distance;
   bool found = false;
-  for (const std::uint32_t p : active_) {
+  for (const std::uint32_t p : far_filter_.NotFar(active_, at.key, kClose, distance)) {
     if (p == nearest) continue;
     const double other = DistanceOf(p, at.key);
     const bool meets = MayMeet(p, other, nearest, distance, at.key);
@@ -271,16 +272,16 @@ void Sweep::AddMeeting(std::uint32_t p, std::uint32_t other, const Edge& edge) {
   if (meeting.edge.turn > 0) meetings_.push_back(meeting);
 }
 
-void Sweep::FindArcCrossings(double low, double high) {
-  arc_crossings_.clear();
-  for (std::size_t i = 0; i < active_.size(); ++i) {
-    for (std::size_t j = i + 1; j < active_.size(); ++j) {
-      if ((*parts_)[active_[i]].kind == Part::Kind::kStraight && (*parts_)[active_[j]].kind == Part::Kind::kStraight)
-        continue;
-      AddCrossings(active_[i], active_[j], low, high, arc_crossings_);
-    }
-  }
-  std::sort(arc_crossings_.begin(), arc_crossings_.end(), [](const Edge& l, const Edge& r) { return l.key < r.key; });
+bool Sweep::FindArcCrossing(std::uint32_t nearest, double low, double high, double middle, Edge& crossing) {
+  // Up to its crossing next to the middle it stays the nearest: so every crossing found is seen.
+  crossings_.clear();
+  for (const std::uint32_t p : (*parts_)[nearest].kind == Part::Kind::kStraight ? active_arcs_ : active_)
+    if (p != nearest) AddCrossings(nearest, p, low, high, crossings_);
+  if (crossings_.empty()) return false;
+  crossing = *std::min_element(crossings_.begin(), crossings_.end(), [&](const Edge& l, const Edge& r) {
+    return std::abs(l.key - middle) < std::abs(r.key - middle);
+  });
+  return true;
 }
 
 void Sweep::AddCrossings(std::uint32_t first, std::uint32_t second, double low, double high,

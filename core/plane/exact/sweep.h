@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/plane/exact/far_filter.h"
 #include "core/plane/exact/part.h"
 #include "core/scene/scene.h"
 
@@ -25,7 +26,7 @@ struct VisibleInterval {
 // way, and a piece seen edge-on gets its place.
 class Sweep {
  public:
-  explicit Sweep(const Scene& scene) : scene_(scene) {}
+  explicit Sweep(const Scene& scene) : scene_(scene), far_filter_(scene) {}
 
   // In the order of theta; the last interval sees nothing. Valid until the next call.
   const std::vector<VisibleInterval>& Run(const std::vector<Part>& parts, const Receiver& receiver);
@@ -49,7 +50,7 @@ class Sweep {
   void Resolve(const Edge& from, const Edge& to, int depth);
   enum class EdgeOn { kCount, kLeaveOut };
   // Of the active parts, in the direction of a key.
-  std::int32_t Nearest(double key, EdgeOn edge_on) const;
+  std::int32_t Nearest(double key, EdgeOn edge_on);
   bool IsEdgeOn(const Part& part) const;
   // Between two edges in one direction.
   void ResolveCoinciding(const Edge& from, const Edge& to);
@@ -71,8 +72,9 @@ class Sweep {
   void Emit(const Edge& from, std::int32_t part);
   // What parts the last visible part from the next: `from`, unless they cross in its direction.
   Edge BreakBetween(const Edge& from, std::int32_t part) const;
-  // Directions strictly between two edges where an active arc crosses another active part.
-  void FindArcCrossings(double low, double high);
+  // The crossing of `nearest` with another active part, one of them an arc, that is next to the middle between two
+  // keys.
+  bool FindArcCrossing(std::uint32_t nearest, double low, double high, double middle, Edge& crossing);
   void AddCrossings(std::uint32_t first, std::uint32_t second, double low, double high,
                     std::vector<Edge>& crossings) const;
 
@@ -84,7 +86,8 @@ class Sweep {
   std::vector<std::uint32_t> first_rank_;
   std::vector<std::uint32_t> last_rank_;
   std::vector<std::uint32_t> active_;
-  std::vector<Edge> arc_crossings_;
+  std::vector<std::uint32_t> active_arcs_;
+  FarFilter far_filter_;
   std::vector<Edge> crossings_;
   std::vector<VisibleInterval> visible_;
   std::vector<Meeting> meetings_;
