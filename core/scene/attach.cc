@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <tuple>
-#include <utility>
 
 #include "core/math/tolerances.h"
 #include "core/scene/element_frame.h"
@@ -30,21 +31,33 @@ double Curvature(const Element& element, const Receiver& receiver) {
   return std::copysign(1 / element.radius, Dot(receiver.normal, element.center - receiver.position));
 }
 
-// What a lifted receiver still touches runs along its normal. It is moved on until it does not, past the other curves
-// that meet there.
-void MoveOnward(const std::vector<Element>& elements, double touch, std::vector<Receiver*> receivers) {
-  for (double step = kOnwardTouches * touch; !receivers.empty() && step <= kFarthestOnward; step *= 2) {
-    std::vector<Receiver*> touching;
-    for (Receiver* receiver : receivers) {
-      const bool touches = std::any_of(elements.begin(), elements.end(), [&](const Element& element) {
-        return DistanceTo(element, receiver->position) <= touch;
-      });
-      if (!touches) continue;
-      receiver->position = receiver->position + step * receiver->tangent;
-      receiver->displaced += step;
-      touching.push_back(receiver);
-    }
-    receivers = std::move(touching);
+bool RunsAlong(const Element& element, const Receiver& receiver, Vector2 direction, double near) {
+  const double sine = std::abs(Dot(direction, FrontNormal(element, receiver.position)));
+  return sine <= kParallel + 4 * near / element.length;
+}
+
+double Clearance(const std::vector<const Element*>& elements, Point2 position) {
+  double clearance = std::numeric_limits<double>::infinity();
+  for (const Element* element : elements) clearance = std::min(clearance, DistanceTo(*element, position));
+  return clearance;
+}
+
+// Off the curves that meet there, toward the normal: so far that each of them, at however small an angle to the normal,
+// is on the side that the normal tells.
+void Lift(const std::vector<const Element*>& elements, double near, Receiver& receiver) {
+  const bool runs_along = std::any_of(elements.begin(), elements.end(), [&](const Element* element) {
+    return DistanceTo(*element, receiver.position) <= near && RunsAlong(*element, receiver, receiver.normal, near);
+  });
+  const auto lifted = [&](double lift) { return receiver.position + lift * receiver.normal; };
+  double lift = kLiftTouches * near;
+  while (!runs_along && 2 * lift <= kFarthestOnward && Clearance(elements, lifted(lift)) <= 2 * near) lift *= 2;
+  receiver.position = lifted(lift);
+  receiver.displaced = lift;
+  // What it still touches runs along the normal: on past all curves that meet there.
+  for (double step = 0.5 * kOnwardTouches * near;
+       step <= kFarthestOnward && Clearance(elements, receiver.position) <= 0.5 * near; step *= 2) {
+    receiver.position = receiver.position + step * receiver.tangent;
+    receiver.displaced += step;
   }
 }
 
@@ -54,12 +67,15 @@ void AttachReceivers(const std::vector<Element>& elements, double near, std::vec
   if (receivers.empty()) return;
   std::sort(receivers.begin(), receivers.end(),
             [](const Receiver* l, const Receiver* r) { return l->position.x < r->position.x; });
+  // No receiver is moved farther.
+  const double far = near + 4 * kFarthestOnward;
   std::vector<bool> touched(receivers.size(), false);
+  std::vector<std::vector<const Element*>> beside(receivers.size());
   std::vector<Rank> rank(receivers.size());
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const Element& element = elements[e];
     // An arc bulges from its chord by less than its length.
-    const double reach = near + (element.kind == Element::Kind::kArc ? element.length : 0);
+    const double reach = far + (element.kind == Element::Kind::kArc ? element.length : 0);
     const double low = std::min(element.a.x, element.b.x) - reach;
     const double high = std::max(element.a.x, element.b.x) + reach;
     auto it = std::lower_bound(receivers.begin(), receivers.end(), low,
@@ -67,10 +83,12 @@ void AttachReceivers(const std::vector<Element>& elements, double near, std::vec
     for (; it != receivers.end() && (*it)->position.x <= high; ++it) {
       Receiver& receiver = **it;
       const auto i = static_cast<std::size_t>(it - receivers.begin());
-      if (DistanceTo(element, receiver.position) > near) continue;
+      const double distance = DistanceTo(element, receiver.position);
+      if (distance > far) continue;
+      beside[i].push_back(&element);
+      if (distance > near) continue;
       touched[i] = true;
-      const double sine = std::abs(Cross(receiver.normal, FrontNormal(element, receiver.position)));
-      if (!(sine <= kParallel + 4 * near / element.length)) continue;
+      if (!RunsAlong(element, receiver, receiver.tangent, near)) continue;
       // A free point's own way is straight: it runs above what bends away from its normal, and below what bends to it.
       const double curvature = Curvature(element, receiver);
       const Rank own{GoesOnAlong(element, receiver, near), curvature <= 0, -std::abs(curvature)};
@@ -79,16 +97,8 @@ void AttachReceivers(const std::vector<Element>& elements, double near, std::vec
       rank[i] = own;
     }
   }
-  std::vector<Receiver*> lifted;
-  for (std::size_t i = 0; i < receivers.size(); ++i) {
-    Receiver& receiver = *receivers[i];
-    if (touched[i] && receiver.element == ElementId::kNone) {
-      receiver.position = receiver.position + kLiftTouches * near * receiver.normal;
-      receiver.displaced = kLiftTouches * near;
-      lifted.push_back(&receiver);
-    }
-  }
-  MoveOnward(elements, 0.5 * near, lifted);
+  for (std::size_t i = 0; i < receivers.size(); ++i)
+    if (touched[i] && receivers[i]->element == ElementId::kNone) Lift(beside[i], near, *receivers[i]);
 }
 
 }  // namespace flatlight

@@ -12,7 +12,8 @@ namespace flatlight {
 // where two meet, to that which goes on along the receiver's tangent, and of those that do to the straightest, one that
 // bends away from its normal before one that bends to it: a circle on a floor stands above the receiver. One whose
 // normal is not that of the curve it lies on (a free point may be turned) gets none; it is lifted off the curve toward
-// its normal instead, and moved on along its tangent from what it still touches.
+// its normal instead, as far as it takes to be on that side of all that meet there, and moved on along its tangent from
+// what runs along its normal.
 void AttachReceivers(const std::vector<Element>& elements, double near, std::vector<Receiver*> receivers);
 
 }  // namespace flatlight
