@@ -34,6 +34,21 @@ void ReverseProbe(ProbeDescription& probe) {
   probe.to = 1 - to;
 }
 
+template <typename Look>
+void LookAtPoints(const SceneDescription& scene, Look look) {
+  for (const CurveDescription& curve : scene.curves) {
+    if (const auto* segment = std::get_if<SegmentDescription>(&curve.shape)) {
+      look(segment->a), look(segment->b);
+    } else if (const auto* polyline = std::get_if<PolylineDescription>(&curve.shape)) {
+      for (const Point2 point : polyline->points) look(point);
+    } else {
+      look(std::get<ArcDescription>(curve.shape).center);
+    }
+  }
+  for (const ProbeDescription& probe : scene.probes)
+    for (const ProbePointDescription& point : probe.points) look(point.position);
+}
+
 }  // namespace
 
 Vector2 Similarity::Turned(Vector2 v) const {
@@ -77,22 +92,20 @@ SceneDescription Moved(const SceneDescription& scene, const Similarity& similari
   return moved;
 }
 
+bool IsExact(const SceneDescription& scene, const Similarity& similarity) {
+  bool exact = true;
+  LookAtPoints(scene, [&](Point2 p) {
+    const Vector2 turned = similarity.scale * similarity.Turned(p - Point2{});
+    exact = exact && similarity(p) - similarity.shift == Point2{} + turned;
+  });
+  return exact;
+}
+
 double RoundingOf(const SceneDescription& moved, const Similarity& similarity) {
   double largest = 0;
-  const auto look = [&](Point2 p) { largest = std::max({largest, std::abs(p.x), std::abs(p.y)}); };
-  for (const CurveDescription& curve : moved.curves) {
-    if (const auto* segment = std::get_if<SegmentDescription>(&curve.shape)) {
-      look(segment->a), look(segment->b);
-    } else if (const auto* polyline = std::get_if<PolylineDescription>(&curve.shape)) {
-      for (const Point2 point : polyline->points) look(point);
-    } else {
-      const auto& arc = std::get<ArcDescription>(curve.shape);
-      look(arc.center);
-      largest = std::max(largest, arc.radius);
-    }
-  }
-  for (const ProbeDescription& probe : moved.probes)
-    for (const ProbePointDescription& point : probe.points) look(point.position);
+  LookAtPoints(moved, [&](Point2 p) { largest = std::max({largest, std::abs(p.x), std::abs(p.y)}); });
+  for (const CurveDescription& curve : moved.curves)
+    if (const auto* arc = std::get_if<ArcDescription>(&curve.shape)) largest = std::max(largest, arc->radius);
   // Each coordinate: two products, a sum, the scale, the shift; those before the shift are of the size of what the
   // shift leaves, or of the shift itself.
   const double before = largest + std::max(std::abs(similarity.shift.x), std::abs(similarity.shift.y));

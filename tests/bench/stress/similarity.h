@@ -27,6 +27,9 @@ struct Similarity {
 // points keep their order.
 SceneDescription Moved(const SceneDescription& scene, const Similarity& similarity);
 
+// Whether no point of that description is rounded. For turns by quarters and scales by powers of two.
+bool IsExact(const SceneDescription& scene, const Similarity& similarity);
+
 // How far the points of that description are rounded from where they should be, in its own units of length.
 double RoundingOf(const SceneDescription& moved, const Similarity& similarity);
 
