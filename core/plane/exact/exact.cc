@@ -79,6 +79,10 @@ class LightSum {
 ExactSolver::ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions options, const Triangulation* triangulation)
     : scene_(scene), options_(options), gatherer_(scene, bvh), sweep_(scene), triangulation_(triangulation) {
   if (triangulation) view_.emplace(scene, *triangulation);
+  brightest_ = scene.environment();
+  for (const Curve& curve : scene.curves())
+    for (int channel = 0; channel < kMaxChannels; ++channel)
+      brightest_[channel] = std::max(brightest_[channel], curve.radiance[channel]);
   for (std::size_t e = 0; e < scene.elements().size(); ++e) {
     const ElementId id = static_cast<ElementId>(e);
     const Curve& curve = scene.curve_of(id);
@@ -150,6 +154,7 @@ bool ExactSolver::AddView(const Receiver& receiver, ExactValue& value) {
         after = scene_.curve_of(element).radiance;
       }
     }
+    if (triangulation_->has_slits()) AddSlit<kChannels>(limit, receiver, value);
     if (!sum.Changes(after)) return;
     if (limit.vertex == ViewLimit::kHorizon) {
       sum.Next() = HorizonEdge(Dot(receiver.tangent, {limit.x, limit.y}) > 0 ? 1 : -1);
@@ -163,6 +168,24 @@ bool ExactSolver::AddView(const Receiver& receiver, ExactValue& value) {
   });
   if (!decided) value = ExactValue();
   return decided;
+}
+
+template <int kChannels>
+void ExactSolver::AddSlit(const ViewLimit& limit, const Receiver& receiver, ExactValue& value) const {
+  if (limit.vertex == ViewLimit::kHorizon) return;
+  const double slit = triangulation_->Slit(limit.vertex);
+  if (slit == 0) return;
+  // Between places that are both that near to the vertex, or of an end that reaches beyond it: at most twice what one
+  // place so far off changes, which the bound is twice of.
+  Edge edge;
+  const Vector2 to{limit.x, limit.y};
+  SetVertexEdge(Dot(receiver.tangent, to), Dot(receiver.normal, to), triangulation_->vertices()[limit.vertex], edge);
+  const EdgeErrors errors = BoundErrors(edge, receiver.curvature, slit);
+  for (int channel = 0; channel < kChannels; ++channel) {
+    value.irradiance_error[channel] += brightest_[channel] * errors.s;
+    if (options_.derivatives >= 1) value.gradient_error[channel] += brightest_[channel] * errors.s_first;
+    if (options_.derivatives >= 2) value.hessian_error[channel] += brightest_[channel] * errors.s_second;
+  }
 }
 
 template <int kChannels>

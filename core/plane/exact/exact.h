@@ -68,6 +68,9 @@ class ExactSolver {
   // False if the triangulation cannot decide what is seen; `value` is then as it was.
   template <int kChannels>
   bool AddView(const Receiver& receiver, ExactValue& value);
+  // The light that may be left out, or put in, beside a vertex of the triangulation.
+  template <int kChannels>
+  void AddSlit(const ViewLimit& limit, const Receiver& receiver, ExactValue& value) const;
   template <int kChannels>
   void AddEnvelope(const Envelope& envelope, const Receiver& receiver, ExactValue& value) const;
   template <int kChannels>
@@ -86,6 +89,7 @@ class ExactSolver {
   const Triangulation* triangulation_;
   std::optional<View> view_;
   double undecided_ = 0;
+  Spectrum brightest_;  // Of all that is seen anywhere.
   std::vector<Emission> emissions_;  // By element.
   std::vector<ElementId> emitters_;  // Where occlusion is left out.
   std::vector<Part> single_;

@@ -6,9 +6,11 @@
 #include <numeric>
 #include <utility>
 
+#include "core/math/tolerances.h"
 #include "core/plane/box.h"
 #include "core/plane/intersect.h"
 #include "core/plane/triangulation/hilbert.h"
+#include "core/plane/triangulation/predicates.h"
 
 namespace flatlight {
 namespace {
@@ -30,7 +32,7 @@ class Cutter {
   explicit Cutter(const Scene& scene)
       : scene_(scene),
         touch_(scene.touch_distance()),
-        cuts_{Mesh(PlanarCuts::kHalf, touch_, MostWork(scene.elements().size())), {}} {}
+        cuts_{Mesh(PlanarCuts::kHalf, touch_, MostWork(scene.elements().size())), {}, {}} {}
 
   bool Run() {
     if (scene_.traits().has_arcs || !InsertEnds()) return false;
@@ -42,6 +44,7 @@ class Cutter {
         if (piece.a != piece.b && !Insert(piece)) return false;
       }
     }
+    WidenSlits();
     return true;
   }
 
@@ -86,11 +89,13 @@ class Cutter {
     const std::optional<Mesh::Vertex> v = mesh.Insert(p, near);
     if (!v) return std::nullopt;
     cuts_.uncertain.resize(mesh.points().size(), 0);
+    cuts_.slit.resize(mesh.points().size(), 0);
     float& kept = cuts_.uncertain[*v];
     if (mesh.points().size() > before) {
       kept = static_cast<float>(uncertain);
     } else if (mesh.At(*v) != p) {
       kept = std::max(kept, static_cast<float>(touch_));
+      NoteSlit(*v, Length(p - mesh.At(*v)));
     }
     return v;
   }
@@ -110,6 +115,7 @@ class Cutter {
       }
       case Mesh::Way::Kind::kVertex:
         if (way.vertex == Mesh::kNone || !IsOn(piece.element, way.vertex)) return false;
+        NoteSlit(way.vertex, piece.element);
         SplitAt(piece, way.vertex);
         return true;
       case Mesh::Way::Kind::kMarked:
@@ -122,6 +128,51 @@ class Cutter {
   bool IsOn(std::uint32_t element, Mesh::Vertex v) const {
     const Element& e = scene_.elements()[element];
     return std::abs(Cross(e.b - e.a, cuts_.mesh.At(v) - e.a)) <= 3 * touch_ * e.length;
+  }
+
+  void NoteSlit(Mesh::Vertex v, double wide) {
+    cuts_.slit[v] = std::max(cuts_.slit[v], static_cast<float>(wide * (1 + 0x1p-22)));
+  }
+  // Where an element bends to a vertex that it passes.
+  void NoteSlit(Mesh::Vertex v, std::uint32_t element) {
+    const Element& e = scene_.elements()[element];
+    const Point2 place = cuts_.mesh.At(v);
+    if (Orientation(e.a, e.b, place) == 0) return;
+    NoteSlit(v, std::abs(Cross(e.b - e.a, place - e.a)) / e.length + 12 * kUnitRoundoff);
+  }
+
+  // Two ways that leave a vertex at an angle, each beginning so far off it, may cross that much farther on by the sine
+  // of the angle; if it is obtuse, no farther than they are apart.
+  void WidenSlits() {
+    const Mesh& mesh = cuts_.mesh;
+    struct Way {
+      Mesh::Vertex from;
+      double angle;  // Grows with it, around once from -2 to 2.
+      Vector2 direction;
+      double length;
+    };
+    std::vector<Way> ways;
+    for (Mesh::Side side = 0; side < 3 * mesh.triangles(); ++side) {
+      const Mesh::Vertex from = mesh.From(side);
+      if (mesh.Mark(side) == Mesh::kNone || cuts_.slit[from] == 0) continue;
+      const Vector2 way = mesh.At(mesh.To(side)) - mesh.At(from), direction = Normalized(way);
+      const double right = direction.x / (std::abs(direction.x) + std::abs(direction.y));
+      ways.push_back({from, std::copysign(1 - right, direction.y), direction, Length(way)});
+    }
+    std::sort(ways.begin(), ways.end(),
+              [](const Way& l, const Way& r) { return l.from != r.from ? l.from < r.from : l.angle < r.angle; });
+    for (std::size_t begin = 0, end = 0; begin < ways.size(); begin = end) {
+      while (end < ways.size() && ways[end].from == ways[begin].from) ++end;
+      double widest = 1, longest = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        const Way& next = ways[i + 1 < end ? i + 1 : begin];
+        longest = std::max(longest, ways[i].length);
+        if (end - begin > 1 && Dot(ways[i].direction, next.direction) > 0)
+          widest = std::max(widest, 1 / std::abs(Cross(ways[i].direction, next.direction)));
+      }
+      const double slit = static_cast<double>(cuts_.slit[ways[begin].from]);
+      NoteSlit(ways[begin].from, std::min(slit * widest, std::max(slit, longest)));
+    }
   }
 
   void MarkEdge(Mesh::Side side, std::uint32_t element) {
@@ -141,8 +192,10 @@ class Cutter {
     if (other.element == PlanarCuts::kShared) return false;
     double uncertain = 0;
     const Point2 place = Crossing(piece, other, uncertain);
+    const std::size_t before = mesh.points().size();
     const std::optional<Mesh::Vertex> v = InsertAt(place, uncertain, side);
     if (!v) return false;
+    if (mesh.points().size() == before) NoteSlit(*v, piece.element), NoteSlit(*v, other.element);
     if (*v == other.a || *v == other.b) {
       // The piece passes an end of the other one. It must get ahead.
       if (*v == piece.a || *v == piece.b) return false;

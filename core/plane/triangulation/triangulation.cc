@@ -60,7 +60,7 @@ std::shared_ptr<const Triangulation> Triangulation::Of(const Scene& scene) {
 
 std::size_t Triangulation::bytes() const {
   const auto bytes = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
-  return sizeof(*this) + bytes(triangles_) + bytes(vertices_) + bytes(uncertain_) + bytes(first_piece_) +
+  return sizeof(*this) + bytes(triangles_) + bytes(vertices_) + bytes(uncertain_) + bytes(slits_) + bytes(first_piece_) +
          bytes(pieces_) + bytes(hints_);
 }
 
@@ -70,12 +70,14 @@ void Triangulation::TakeTriangles(const Scene& scene, const PlanarCuts& cuts) {
   std::vector<std::uint32_t> place(order.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
   std::vector<std::uint32_t> number(mesh.points().size(), kNone);
-  vertices_.reserve(number.size()), uncertain_.reserve(number.size());
+  vertices_.reserve(number.size()), uncertain_.reserve(number.size()), slits_.reserve(number.size());
   const auto number_of = [&](Mesh::Vertex v) {
     if (number[v] == kNone) {
       number[v] = static_cast<std::uint32_t>(vertices_.size());
       vertices_.push_back(mesh.At(v));
       uncertain_.push_back(cuts.uncertain[v]);
+      slits_.push_back(cuts.slit[v]);
+      has_slits_ = has_slits_ || cuts.slit[v] > 0;
     }
     return number[v];
   };

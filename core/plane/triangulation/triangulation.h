@@ -54,6 +54,10 @@ class Triangulation {
   // How far a vertex may be from where the scene has it: Scene::coordinate_error(), more at crossings and where ends
   // that touch were made one.
   double Uncertain(std::uint32_t vertex) const { return coordinate_error_ + static_cast<double>(uncertain_[vertex]); }
+  // How far off a vertex elements may pass or end that go to it here: what is seen between them there is left out. 0
+  // where they meet exactly.
+  double Slit(std::uint32_t vertex) const { return static_cast<double>(slits_[vertex]); }
+  bool has_slits() const { return has_slits_; }
   double most_uncertain() const { return most_uncertain_; }  // Of all vertices.
   // Of the scene that it was made for. It serves any scene with the same world and this error.
   double coordinate_error() const { return coordinate_error_; }
@@ -90,6 +94,8 @@ class Triangulation {
   std::vector<Triangle> triangles_;
   std::vector<Point2> vertices_;
   std::vector<float> uncertain_;            // What comes on top of coordinate_error_.
+  std::vector<float> slits_;
+  bool has_slits_ = false;
   std::vector<std::uint32_t> first_piece_;  // By element, and one more.
   std::vector<Piece> pieces_;
   // A triangle for each cell of a square grid over all vertices but the corners: to begin a search in.
