@@ -140,6 +140,7 @@ std::int32_t Sweep::Nearest(double key, EdgeOn edge_on) {
   std::int32_t nearest = VisibleInterval::kNothing;
   double best = std::numeric_limits<double>::infinity();
   for (const std::uint32_t p : far_filter_.NotFar(active_, key, kClose)) {
+    ++comparisons_;
     if (edge_on == EdgeOn::kLeaveOut && IsEdgeOn((*parts_)[p])) continue;
     const double distance = DistanceOf(p, key);
     bool nearer = nearest == VisibleInterval::kNothing || distance < best;
@@ -244,6 +245,7 @@ bool Sweep::FindCrossing(std::uint32_t nearest, const Edge& from, const Edge& to
   double best = distance;
   bool found = false;
   for (const std::uint32_t p : far_filter_.NotFar(active_, at.key, kClose, distance)) {
+    ++comparisons_;
     if (p == nearest) continue;
     const double other = DistanceOf(p, at.key);
     const bool meets = MayMeet(p, other, nearest, distance, at.key);
@@ -275,8 +277,10 @@ void Sweep::AddMeeting(std::uint32_t p, std::uint32_t other, const Edge& edge) {
 bool Sweep::FindArcCrossing(std::uint32_t nearest, double low, double high, double middle, Edge& crossing) {
   // Up to its crossing next to the middle it stays the nearest: so every crossing found is seen.
   crossings_.clear();
-  for (const std::uint32_t p : (*parts_)[nearest].kind == Part::Kind::kStraight ? active_arcs_ : active_)
+  for (const std::uint32_t p : (*parts_)[nearest].kind == Part::Kind::kStraight ? active_arcs_ : active_) {
+    ++comparisons_;
     if (p != nearest) AddCrossings(nearest, p, low, high, crossings_);
+  }
   if (crossings_.empty()) return false;
   crossing = *std::min_element(crossings_.begin(), crossings_.end(), [&](const Edge& l, const Edge& r) {
     return std::abs(l.key - middle) < std::abs(r.key - middle);

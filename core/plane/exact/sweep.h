@@ -39,6 +39,9 @@ class Sweep {
   };
   const std::vector<Meeting>& meetings() const { return meetings_; }
 
+  // Parts that were compared with another one so far.
+  double comparisons() const { return comparisons_; }
+
  private:
   struct Break {
     const Edge* edge;
@@ -91,6 +94,7 @@ class Sweep {
   std::vector<Edge> crossings_;
   std::vector<VisibleInterval> visible_;
   std::vector<Meeting> meetings_;
+  double comparisons_ = 0;
 };
 
 }  // namespace flatlight
