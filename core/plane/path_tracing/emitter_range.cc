@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/tolerances.h"
 #include "core/plane/shaft.h"
 
 namespace flatlight {
@@ -68,8 +69,11 @@ EmitterRange ByLength(const Element& arc, const Vertex& vertex) {
 
 EmitterRange ArcRangeFromInside(const Element& arc, EmittingSides sides, const Vertex& vertex) {
   if (arc.Orientation() < 0 && sides == EmittingSides::kFront) return {};
-  // Between the arc and its chord the arc fills more than a half turn.
-  if (!(arc.Orientation() * Cross(arc.b - arc.a, vertex.at.position - arc.a) > 0)) return ByLength(arc, vertex);
+  // Between the arc and its chord the arc fills more than a half turn; on the chord, too, its ends may lie at the
+  // horizon or below it though all else is above.
+  const Vector2 chord = arc.b - arc.a;
+  const double beyond_chord = arc.Orientation() * Cross(chord, vertex.at.position - arc.a);
+  if (!(beyond_chord > 4 * kTouchDistance * Length(chord))) return ByLength(arc, vertex);
   EmitterRange range = Between(arc.a, arc.b, vertex);
   range.far = true;
   range.alone = true;

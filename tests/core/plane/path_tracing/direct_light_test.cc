@@ -86,5 +86,27 @@ TEST(DirectLightTest, TwoPercentTooMuchIsNoticed) {
   EXPECT_FALSE(errors.Unbiased()) << errors.MeanZ();
 }
 
+// On its chord, to rounding, an arc is all that is seen, with its ends at the horizon: whichever side of them rounding
+// puts a point.
+TEST(DirectLightTest, FromItsChordAnArcIsAllThereIs) {
+  for (int turn = 0; turn < 40; ++turn) {
+    const double start = 0.37 * turn, sweep = turn % 3 == 0 ? 0.5 * std::numbers::pi : 0.3 + 0.03 * turn;
+    SceneMaker maker;
+    maker.Arc("lamp", {{0.2, -0.1}, 0.7, start, sweep}, {.radiance = {1}});
+    const auto end = [&](double angle) { return Point2{0.2 + 0.7 * std::cos(angle), -0.1 + 0.7 * std::sin(angle)}; };
+    maker.Segment("chord", end(start), end(start + sweep)).Probe("chord", 3, Side::kBack);
+    const std::shared_ptr<const Scene> scene = maker.Build();
+    const auto caster = std::make_shared<const RayCaster>(scene);
+    PathTracingOptions options;
+    options.max_bounces = 0;
+    const PathTracer tracer(caster, options);
+    for (std::uint64_t point = 0; point < 3; ++point) {
+      const MeanEstimate estimate = Trace(tracer, *scene, scene->probes()[0].receivers[point], 5, point, 64, 1);
+      EXPECT_NEAR(estimate.mean, 2, 8 * estimate.StandardError() + 1e-12) << turn;
+      EXPECT_LT(estimate.StandardError(), 0.2) << turn;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace flatlight
