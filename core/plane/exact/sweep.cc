@@ -346,12 +346,16 @@ Edge Sweep::BreakBetween(const Edge& from, std::int32_t part) const {
       AddMeetingError(scene_, *receiver_, e, f, edge);
     return edge;
   }
-  const ElementCrossings points = CrossElements(e, f, scene_.touch_distance());
-  for (int i = 0; i < points.count; ++i) {
-    Edge edge = VertexEdge(*receiver_, points.point[i]);
-    if (!(edge.normal > 0 && std::abs(edge.key - from.key) <= 4 * (Uncertainty(edge) + Uncertainty(from)))) continue;
-    AddMeetingError(scene_, *receiver_, e, f, edge);
-    return edge;
+  // One that ends on the other, to rounding, crosses it as that one's line, perhaps not as its own.
+  for (const bool own : {true, false}) {
+    const ElementCrossings points =
+        own ? CrossElements(e, f, scene_.touch_distance()) : CrossElements(f, e, scene_.touch_distance());
+    for (int i = 0; i < points.count; ++i) {
+      Edge edge = VertexEdge(*receiver_, points.point[i]);
+      if (!(edge.normal > 0 && std::abs(edge.key - from.key) <= 4 * (Uncertainty(edge) + Uncertainty(from)))) continue;
+      AddMeetingError(scene_, *receiver_, e, f, edge);
+      return edge;
+    }
   }
   return from;
 }

@@ -168,20 +168,31 @@ TEST(CurveGridTest, WhatEditsLeaveBehindIsBounded) {
   }
 }
 
+// In the open: nothing stops them before.
 TEST(CurveGridTest, RaysFromFarAwayMeetTinyCurves) {
   Random random(7);
-  SceneDescription description = Room(random, 20, 0.3);
-  AddCluster(description, random, {0.31, -0.2}, 1e-7, 1e-8, 400);
+  SceneDescription description;
+  for (const double x : {-1.0, 1.0})
+    for (const double y : {-1.0, 1.0}) AddCurve(description, SegmentDescription{{x, y}, {0.99 * x, 0.98 * y}});
+  const Point2 middle{0.31, -0.2};
+  AddCluster(description, random, middle, 1e-7, 1e-8, 400);
+  AddCluster(description, random, middle, 1e-10, 1e-11, 400);
   const auto scene = BuildWithProbe(description);
   const RayCaster caster(scene);
   for (const double distance : {3.0, 300.0, 3e4, 3e8}) {
-    for (int i = 0; i < 200; ++i) {
+    int hits = 0;
+    for (int i = 0; i < 400; ++i) {
       const SurfacePoint from{Point2{} + distance * random.Direction(), ElementId::kNone};
-      const Vector2 direction = Point2{0.31, -0.2} + 1e-7 * (random.Point() - Point2{}) - from.position;
+      const double wide = i % 2 == 0 ? 1e-7 : 1e-10;
+      const Vector2 direction = middle + wide * (random.Point() - Point2{}) - from.position;
       const auto expected = BruteClosestHit(*scene, from, direction);
       const auto hit = caster.ClosestHit(from, direction);
       ASSERT_EQ(hit ? hit->distance : INFINITY, expected ? expected->distance : INFINITY) << distance;
+      if (!hit) continue;
+      ASSERT_EQ(hit->element, expected->element) << distance;
+      ++hits;
     }
+    EXPECT_GT(hits, 40) << distance;
   }
 }
 

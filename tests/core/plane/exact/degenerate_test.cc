@@ -269,6 +269,24 @@ TEST(DegenerateTest, ATinyCircleAndAWallThatTouchesIt) {
   ExpectTrue(scene, 1e-13);
 }
 
+// In line with a crossing, and with the end of a wall upon it, there is another end, far behind: light begins at the
+// crossing, and moves with it.
+TEST(DegenerateTest, AnEndInLineWithACrossingIsNotWhereLightBegins) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, SegmentDescription{{2, 1.5}, {-2, 1.5}});
+  AddCurve(scene, SegmentDescription{{-2, -2}, {2, -1.5}});
+  AddCurve(scene,
+           SegmentDescription{{0.4325642522503203, 0.8252406583854818}, {0.5707292836508524, 0.6710846168892833}}, 1);
+  AddCurve(scene,
+           SegmentDescription{{0.5031714593925872, 0.8381027934015324}, {0.48322394463087076, 0.28396302543438784}});
+  AddCurve(scene, SegmentDescription{{0.5, 0.75}, {-0.2, 0.4}});
+  Probe(scene, 0, 0, 1, Side::kFront);
+  const WorldValue value = ValueOf(scene);
+  // By differences in 60 digits.
+  EXPECT_NEAR(value.irradiance, 0.015010902142157997, 1e-14);
+  EXPECT_NEAR(value.gradient, -0.11620821, 1e-8);
+}
+
 // Walls through one point, in a room: all that is seen shines alike. Work grows as what is seen of them; of arcs, each
 // of these is asked for crossings with all that lie in its direction.
 double ComparisonsOfPencil(bool arcs, int walls) {
