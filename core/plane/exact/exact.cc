@@ -142,6 +142,7 @@ void ExactSolver::Add(const Receiver& receiver, ExactValue& value) {
 template <int kChannels>
 bool ExactSolver::AddView(const Receiver& receiver, ExactValue& value) {
   LightSum<kChannels> sum(scene_, options_, receiver, value);
+  const bool slits = triangulation_->has_slits();
   const bool decided = view_->Walk(receiver, [&](const ViewLimit& limit, Gate gate) {
     Spectrum after;
     if (gate == Triangulation::kNothing) {
@@ -154,7 +155,8 @@ bool ExactSolver::AddView(const Receiver& receiver, ExactValue& value) {
         after = scene_.curve_of(element).radiance;
       }
     }
-    if (triangulation_->has_slits()) AddSlit<kChannels>(limit, receiver, value);
+    if (slits) [[unlikely]]
+      AddSlit<kChannels>(limit, receiver, value);
     if (!sum.Changes(after)) return;
     if (limit.vertex == ViewLimit::kHorizon) {
       sum.Next() = HorizonEdge(Dot(receiver.tangent, {limit.x, limit.y}) > 0 ? 1 : -1);
@@ -171,7 +173,7 @@ bool ExactSolver::AddView(const Receiver& receiver, ExactValue& value) {
 }
 
 template <int kChannels>
-void ExactSolver::AddSlit(const ViewLimit& limit, const Receiver& receiver, ExactValue& value) const {
+[[gnu::noinline]] void ExactSolver::AddSlit(const ViewLimit& limit, const Receiver& receiver, ExactValue& value) const {
   if (limit.vertex == ViewLimit::kHorizon) return;
   const double slit = triangulation_->Slit(limit.vertex);
   if (slit == 0) return;

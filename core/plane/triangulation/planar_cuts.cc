@@ -144,6 +144,7 @@ class Cutter {
   // Two ways that leave a vertex at an angle, each beginning so far off it, may cross that much farther on by the sine
   // of the angle; if it is obtuse, no farther than they are apart.
   void WidenSlits() {
+    if (std::all_of(cuts_.slit.begin(), cuts_.slit.end(), [](float slit) { return slit == 0; })) return;
     const Mesh& mesh = cuts_.mesh;
     struct Way {
       Mesh::Vertex from;
