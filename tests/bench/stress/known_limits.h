@@ -19,6 +19,7 @@ struct KnownLimit {
 // side.
 inline constexpr KnownLimit kKnownLimits[] = {
     {"corners", "similarity", 0.004, "points that rounding puts on another side of walls nearer than what they touch"},
+    {"corners", "rays", 0.0005, "points at the apex of a hairpin of 1e-7, on one of its sides or beyond it"},
     {"junctions", "similarity", 0.001,
      "points that rounding puts on another side of walls nearer than what they touch"},
     {"tangents", "similarity", 0.001, "points that rounding puts on another side of walls nearer than what they touch"},
@@ -27,11 +28,13 @@ inline constexpr KnownLimit kKnownLimits[] = {
     {"cluster", "similarity", 0.001, "derivatives where a crossing and an end are one place to rounding"},
     {"cluster", "reversal", 0.001, "derivatives at events of features of 1e-9, which the check does not see as events"},
     {"grid arcs", "similarity", 0.001, "derivatives where a wall ends on a circle that it touches"},
+    {"grid arcs", "reversal", 0.001, "second derivatives where curves touch and end in one place"},
     {"closed arcs", "similarity", 0.003, "an arc and its chord that meet to rounding leave slits of up to 1e-12"},
     {"closed arcs", "oracle", 0.01,
      "walls that meet to rounding leave slits: light of 1e-17 is left out, with a bound of 0"},
     {"arcs", "oracle", 0.02, "full circles close to rounding, for the oracle: light of 1e-15 comes through"},
     {"scatter", "oracle", 0.01, "full circles close to rounding, for the oracle: light of 1e-15 comes through"},
+    {"nested", "oracle", 0.01, "full circles close to rounding, for the oracle: light of 1e-15 comes through"},
     {"arcs", "rays", 0.0005, "arcs of 1e-11: which side is seen is below rounding"},
     {"slivers", "rays", 0.0005, "points in corners of 1e-3: rays start farther on, where they see 1e-8 more or less"},
     {"slivers", "sampling", 0.002, "lamps nearer than 1e-9 to both sides of a wall: path tracing misses them"},
