@@ -89,7 +89,7 @@ class ExactSolver {
   const Triangulation* triangulation_;
   std::optional<View> view_;
   double undecided_ = 0;
-  Spectrum brightest_;  // Of all that is seen anywhere.
+  Spectrum brightest_;               // Of all that is seen anywhere.
   std::vector<Emission> emissions_;  // By element.
   std::vector<ElementId> emitters_;  // Where occlusion is left out.
   std::vector<Part> single_;

@@ -21,7 +21,7 @@ struct PlanarCuts {
 
   Mesh mesh;
   std::vector<float> uncertain;  // By vertex: how far it may be from where the scene has it, beside coordinate_error.
-  std::vector<float> slit;  // By vertex: how far off it the elements may pass or end that go to it here.
+  std::vector<float> slit;       // By vertex: how far off it the elements may pass or end that go to it here.
 };
 
 // Absent if the scene has arcs, elements hardly longer than the touch distance, or very many crossings.

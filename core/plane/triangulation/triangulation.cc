@@ -60,8 +60,8 @@ std::shared_ptr<const Triangulation> Triangulation::Of(const Scene& scene) {
 
 std::size_t Triangulation::bytes() const {
   const auto bytes = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
-  return sizeof(*this) + bytes(triangles_) + bytes(vertices_) + bytes(uncertain_) + bytes(slits_) + bytes(first_piece_) +
-         bytes(pieces_) + bytes(hints_);
+  return sizeof(*this) + bytes(triangles_) + bytes(vertices_) + bytes(uncertain_) + bytes(slits_) +
+         bytes(first_piece_) + bytes(pieces_) + bytes(hints_);
 }
 
 void Triangulation::TakeTriangles(const Scene& scene, const PlanarCuts& cuts) {

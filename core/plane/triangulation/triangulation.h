@@ -93,7 +93,7 @@ class Triangulation {
   double most_uncertain_ = 0;
   std::vector<Triangle> triangles_;
   std::vector<Point2> vertices_;
-  std::vector<float> uncertain_;            // What comes on top of coordinate_error_.
+  std::vector<float> uncertain_;  // What comes on top of coordinate_error_.
   std::vector<float> slits_;
   bool has_slits_ = false;
   std::vector<std::uint32_t> first_piece_;  // By element, and one more.
