@@ -22,16 +22,16 @@ class Kernel {
     emitter_normal_ = sign * Left(place.tangent);
     tau_ = Dot(receiver.tangent, d);
     q_ = LengthSquared(d);
-    if (radius != 0) {
-      a_ = b_ = 0.5 * q_ / radius;
-    } else {
-      a_ = Dot(receiver.normal, d);
-      b_ = -Dot(emitter_normal_, d);
-    }
+    a_ = Dot(receiver.normal, d);
+    b_ = -Dot(emitter_normal_, d);
     root_ = std::sqrt(q_);
+    if (radius != 0) half_curvature_ = 0.5 / radius;
   }
 
-  double Value() const { return a_ * b_ / (q_ * root_); }
+  // On one circle A = B = Q/(2 R), so the value is r/(4 R^2), 0 at the receiver itself.
+  double Value() const {
+    return half_curvature_ != 0 ? half_curvature_ * half_curvature_ * root_ : a_ * b_ / (q_ * root_);
+  }
 
   struct Derivatives {
     double first = 0;
@@ -39,6 +39,11 @@ class Kernel {
   };
   // Along the receiver's tangent, of constant curvature.
   Derivatives Derive() const {
+    if (half_curvature_ != 0) {
+      // r' = -sin theta, sin' theta = r/(4 R^2).
+      const double h = half_curvature_, sine = root_ > 0 ? tau_ / root_ : 0;
+      return {-h * h * sine, -h * h * h * h * root_};
+    }
     const double k = receiver_.curvature;
     const double u = 1 / (q_ * root_), u5 = u / q_, u7 = u5 / q_;
     const double a1 = -k * tau_, a2 = -k * k * a_ + k;
@@ -52,6 +57,7 @@ class Kernel {
   const Receiver& receiver_;
   Vector2 emitter_normal_;
   double tau_, a_, b_, q_, root_;
+  double half_curvature_ = 0;  // 1/(2 R) of their one circle; 0 if there is none.
 };
 
 }  // namespace flatlight
