@@ -31,6 +31,10 @@ inline constexpr double kOnwardTouches = 1024;
 // farther on, up to this. Smaller: a circle of radius 1 that touches the receiver is on neither side of it.
 inline constexpr double kFarthestOnward = 0x1p-20;
 
+// A Bézier curve is followed by arcs to this share of its size, but no closer than touching curves are. Smaller: more
+// arcs, by the third root. What the arcs leave open is measured, and part of stated errors.
+inline constexpr double kBezierShare = 1e-8;
+
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_CORE_MATH_TOLERANCES_H_

@@ -143,6 +143,8 @@ std::shared_ptr<const Field> PathTracingRendering::Snapshot() const {
   field->rays = sampling_.rays();
   const auto channels = static_cast<std::size_t>(scene_->channels());
   const double scale = scene_->frame().radiance_scale;
+  // Rays meet the arcs that follow Béziers: where there is hardly any noise, that counts.
+  const double followed = scene_->bezier_distance();
   std::size_t point = 0;
   for (const Probe& probe : scene_->probes()) {
     ProbeField values;
@@ -156,7 +158,8 @@ std::shared_ptr<const Field> PathTracingRendering::Snapshot() const {
         MeanEstimate estimate;
         if (value.samples > 0) estimate = value.estimates[ComputedChannel(c, sampling_.channels())];
         values.irradiance.push_back(scale * estimate.mean);
-        values.standard_error.push_back(value.samples > 0 ? scale * estimate.StandardError() : 0);
+        values.standard_error.push_back(
+            value.samples > 0 ? scale * (estimate.StandardError() + followed * estimate.mean) : 0);
       }
     }
     field->probes.push_back(std::move(values));

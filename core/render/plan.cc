@@ -106,6 +106,12 @@ void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& d
                     "reference needs a scene that reflects by lambertian materials alone, and curve \"" + other->name +
                         "\" has another: use path-tracing");
   }
+  if (!DirectLightOnly(scene, settings) && scene.traits().has_beziers &&
+      settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone) {
+    diagnostics.Add("settings.derivatives",
+                    "reference gives none of light reflected in a scene with Bézier curves: leave this out, set max "
+                    "bounces to 0, or use ray-tracing");
+  }
   if (scene.traits().elements > kMostReferencePieces) {
     diagnostics.Add("settings.method", "reference does scenes of up to " + Text(kMostReferencePieces) +
                                            " straight and arced pieces, and this one has " +
@@ -156,7 +162,10 @@ void FillMethodDefaults(const Scene& scene, Plan& plan) {
     return;
   }
   if (settings.method == Method::kReference) {
-    if (!settings.derivatives.has_value()) settings.derivatives = Derivatives::kHessian;
+    if (!settings.derivatives.has_value()) {
+      const bool none = scene.traits().has_beziers && !DirectLightOnly(scene, settings);
+      settings.derivatives = none ? Derivatives::kNone : Derivatives::kHessian;
+    }
     if (!settings.target_error.has_value()) settings.target_error = kReferenceError;
     return;
   }

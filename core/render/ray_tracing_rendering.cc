@@ -277,7 +277,9 @@ std::shared_ptr<const Field> RayTracingRendering::Snapshot() const {
       for (std::size_t order = 0; order < static_cast<std::size_t>(orders_); ++order) {
         for (int c = 0; c < scene_->channels(); ++c) {
           value[order]->push_back(unit[order] * estimate.value[order][c]);
-          error[order]->push_back(unit[order] * estimate.error[order][c]);
+          // Rays meet the arcs that follow Béziers: where there is hardly any noise, that counts.
+          const double followed = order == 0 ? scene_->bezier_distance() * estimate.value[0][c] : 0;
+          error[order]->push_back(unit[order] * (estimate.error[order][c] + followed));
         }
       }
     }

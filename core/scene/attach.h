@@ -14,7 +14,8 @@ namespace flatlight {
 // normal is not that of the curve it lies on (a free point may be turned) gets none; it is lifted off the curve toward
 // its normal instead, as far as it takes to be on that side of all that meet there, and moved on along its tangent from
 // what runs along its normal.
-void AttachReceivers(const std::vector<Element>& elements, double near, std::vector<Receiver*> receivers);
+// Béziers are asked themselves, not the elements that follow them.
+void AttachReceivers(const Scene& scene, double near, std::vector<Receiver*> receivers);
 
 }  // namespace flatlight
 

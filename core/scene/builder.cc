@@ -10,6 +10,7 @@
 #include "core/math/tolerances.h"
 #include "core/math/trig.h"
 #include "core/scene/attach.h"
+#include "core/scene/bezier_chain.h"
 #include "core/scene/element_frame.h"
 #include "core/scene/hash.h"
 #include "core/scene/overlap.h"
@@ -93,6 +94,11 @@ void AddShape(const CurveDescription& curve, Box& box) {
     box.Add(segment->a), box.Add(segment->b);
   } else if (const auto* polyline = std::get_if<PolylineDescription>(&curve.shape)) {
     for (const Point2& point : polyline->points) box.Add(point);
+  } else if (const auto* from = std::get_if<BezierDescription>(&curve.shape)) {
+    const Bezier bezier{{from->p0, from->p1, from->p2, from->p3}};
+    // With room for the arcs that follow it.
+    const double room = bezier.IsStraight() ? 0 : 2 * kBezierShare * bezier.Extent();
+    for (const Point2& p : bezier.Extremes()) box.Add({p.x - room, p.y - room}), box.Add({p.x + room, p.y + room});
   } else {
     const auto& arc = std::get<ArcDescription>(curve.shape);
     const int corners = 2 * ArcPieces(arc.sweep_angle);
@@ -215,6 +221,8 @@ void SceneBuilder::AddCurves() {
       for (std::size_t i = 0; i + 1 < count + (polyline->closed ? 1 : 0); ++i) {
         AddPiece(c, ToFrame(polyline->points[i]), ToFrame(polyline->points[(i + 1) % count]));
       }
+    } else if (const auto* bezier = std::get_if<BezierDescription>(&from.shape)) {
+      AddBezier(c, *bezier);
     } else {
       AddArc(c, std::get<ArcDescription>(from.shape));
     }
@@ -270,6 +278,33 @@ void SceneBuilder::AddArc(std::size_t curve, const ArcDescription& arc) {
   if (LengthSquared(piece.b - piece.a) < 1e-280) {
     diagnostics_.Add("plane.curves[" + std::to_string(curve) + "].arc",
                      "is too short to be told from a point beside the size and place of the whole scene");
+  }
+}
+
+void SceneBuilder::AddBezier(std::size_t curve, const BezierDescription& description) {
+  const Bezier bezier{
+      {ToFrame(description.p0), ToFrame(description.p1), ToFrame(description.p2), ToFrame(description.p3)}};
+  const double size = bezier.Extent();
+  if (size < 1e-60) {  // Third powers of it are needed.
+    diagnostics_.Add("plane.curves[" + std::to_string(curve) + "].bezier",
+                     "is too short to be told from a point beside the size and place of the whole scene");
+    return;
+  }
+  const auto number = static_cast<std::uint32_t>(scene_->beziers_.size());
+  scene_->beziers_.push_back(bezier);
+  // Runs of all curves have numbers of their own.
+  const std::uint32_t runs = scene_->bezier_pieces_.empty() ? 0 : scene_->bezier_pieces_.back().run;
+  BezierChain chain = MakeBezierChain(bezier, std::max(kBezierShare * size, 8 * scene_->touch_distance_));
+  for (BezierChain::Piece& piece : chain.pieces) {
+    piece.element.curve = static_cast<CurveId>(curve);
+    piece.element.carrier = static_cast<std::uint32_t>(pieces_.size());
+    piece.element.bezier_piece = static_cast<std::uint32_t>(scene_->bezier_pieces_.size());
+    piece.on.bezier = number;
+    piece.on.run += runs;
+    scene_->bezier_distance_ = std::max(scene_->bezier_distance_, piece.on.distance);
+    scene_->bezier_tilt_ = std::max(scene_->bezier_tilt_, piece.on.tilt);
+    scene_->bezier_pieces_.push_back(piece.on);
+    pieces_.push_back(piece.element);
   }
 }
 
@@ -346,7 +381,7 @@ void SceneBuilder::AddProbes() {
     probe.on_curve = probe.curve != CurveId::kNone;
     for (const Receiver& receiver : probe.receivers) probe.on_curve &= receiver.element != ElementId::kNone;
   }
-  AttachReceivers(scene_->elements_, 2 * scene_->touch_distance_, std::move(loose));
+  AttachReceivers(*scene_, 2 * scene_->touch_distance_, std::move(loose));
   for (Probe& probe : scene_->probes_) {
     if (probe.receivers.empty()) continue;
     probe.low = probe.high = probe.receivers.front().position;
@@ -388,10 +423,15 @@ void SceneBuilder::AddCurveProbe(const ProbeDescription& description, Probe& pro
                                                   [](double s, const Element& e) { return s < e.arc_begin; }));
     const double local = std::clamp((receiver.arc_length - piece->arc_begin) / piece->length, 0.0, 1.0);
     const ElementFrame frame = FrameAt(*piece, last - first == 1 ? fraction : local);
-    receiver.position = frame.position;
-    receiver.tangent = frame.tangent;
-    receiver.normal = side * frame.normal;
-    receiver.curvature = side * frame.curvature;
+    if (const BezierPiece* on = scene_->bezier_piece(*piece); on != nullptr && on->bends) {
+      const Bezier& bezier = scene_->beziers_[on->bezier];
+      PlaceOnBezier(*piece, bezier, bezier.AtLength(local * piece->length, on->from, on->to), side, receiver);
+    } else {
+      receiver.position = frame.position;
+      receiver.tangent = frame.tangent;
+      receiver.normal = side * frame.normal;
+      receiver.curvature = side * frame.curvature;
+    }
     receiver.element = ElementAt(curve, receiver.arc_length);
     probe.receivers.push_back(receiver);
   }
@@ -435,11 +475,14 @@ void SceneBuilder::Summarise() {
   traits.environment = !scene.environment_.IsBlack();
   traits.grey &= scene.environment_.IsGrey();
   for (const Element& element : scene.elements_) traits.has_arcs |= element.kind == Element::Kind::kArc;
+  for (const BezierPiece& piece : scene_->bezier_pieces_) traits.has_beziers |= piece.bends;
   // Rounding of receivers, and of the points of arcs, comes on top of the shift's.
   scene.coordinate_error_ += (traits.has_arcs ? 6 : 2) * kUnitRoundoff;
   // A point of an arc of large radius is a small difference of large numbers.
   double largest_radius = 0;
-  for (const Element& element : scene.elements_) largest_radius = std::max(largest_radius, element.radius);
+  for (const Element& element : scene.elements_)
+    // Arcs of Béziers are known by their ends and tangents.
+    if (element.bezier_piece == Element::kNoBezier) largest_radius = std::max(largest_radius, element.radius);
   if (largest_radius > 1) scene.coordinate_error_ += 4 * kUnitRoundoff * largest_radius;
   for (const Probe& probe : scene.probes_) {
     traits.probe_points += probe.receivers.size();

@@ -29,6 +29,7 @@ class SceneBuilder {
   void AddCurves();
   void AddPiece(std::size_t curve, Point2 a, Point2 b);
   void AddArc(std::size_t curve, const ArcDescription& arc);
+  void AddBezier(std::size_t curve, const BezierDescription& bezier);
   void AddLights();
   void AddProbes();
   PixelGrid PictureOf(const FluenceDescription& description);

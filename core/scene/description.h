@@ -64,6 +64,14 @@ struct ArcDescription {
   double sweep_angle = 0;
 };
 
+// Cubic, from p0 to p3.
+struct BezierDescription {
+  Point2 p0;
+  Point2 p1;
+  Point2 p2;
+  Point2 p3;
+};
+
 struct EmissionDescription {
   SpectrumValues radiance;
   bool two_sided = false;
@@ -71,7 +79,7 @@ struct EmissionDescription {
 
 struct CurveDescription {
   std::string name;
-  std::variant<std::monostate, SegmentDescription, PolylineDescription, ArcDescription> shape;
+  std::variant<std::monostate, SegmentDescription, PolylineDescription, ArcDescription, BezierDescription> shape;
   std::string material;
   std::optional<EmissionDescription> emission;
 };

@@ -58,6 +58,8 @@ void AddShape(const CurveDescription& curve, Hasher& hasher) {
     hasher.Add(std::uint64_t{polyline->closed});
   } else if (const auto* arc = std::get_if<ArcDescription>(&curve.shape)) {
     hasher.Add(arc->center), hasher.Add(arc->radius), hasher.Add(arc->start_angle), hasher.Add(arc->sweep_angle);
+  } else if (const auto* bezier = std::get_if<BezierDescription>(&curve.shape)) {
+    hasher.Add(bezier->p0), hasher.Add(bezier->p1), hasher.Add(bezier->p2), hasher.Add(bezier->p3);
   }
 }
 

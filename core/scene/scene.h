@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/math/bezier.h"
 #include "core/math/vec.h"
 #include "core/scene/description.h"
 #include "core/scene/diagnostic.h"
@@ -38,6 +39,9 @@ struct Element {
   double arc_begin = 0;  // Arc length from the curve's first point to a.
   // Arcs of one circle share a carrier: a ray that leaves one of them meets the circle again at one known place only.
   std::uint32_t carrier = 0;
+  // What it stands for, if its curve is a Bézier: Scene::bezier_pieces().
+  std::uint32_t bezier_piece = kNoBezier;
+  static constexpr std::uint32_t kNoBezier = 0xffffffff;
   // Arcs only. The arc turns about center by sweep_angle (positive: counter-clockwise).
   Point2 center;
   double radius = 0;
@@ -47,6 +51,18 @@ struct Element {
 
   // +1 if the front faces the centre (counter-clockwise), -1 if it faces away, 0 if straight.
   double Orientation() const { return kind == Kind::kSegment ? 0 : sweep_angle > 0 ? 1 : -1; }
+};
+
+// The stretch of a Bézier curve that an element follows. The elements of one curve go over into each other without a
+// corner, but at cusps.
+struct BezierPiece {
+  std::uint32_t bezier = 0;  // In Scene::beziers().
+  std::uint32_t run = 0;     // Elements of one run bend to one side, by less than half a turn in all.
+  double from = 0;           // Parameters.
+  double to = 1;
+  double distance = 0;  // The element is so far from the stretch, at most.
+  double tilt = 0;      // Sine of the largest angle between them.
+  bool bends = false;   // False if it is straight, or as good as a point: places and directions are the element's.
 };
 
 struct Curve {
@@ -66,10 +82,12 @@ struct Curve {
 
 // A point at which irradiance is wanted. Normalised coordinates.
 struct Receiver {
-  Point2 position;
+  Point2 position;                       // On the piece.
+  Vector2 offset;                        // From there to the point itself, if the piece stands for a Bézier.
   Vector2 normal;                        // Unit, toward the side that receives.
   Vector2 tangent;                       // Unit, along increasing arc length; (normal.y, -normal.x) for a free point.
   double curvature = 0;                  // kappa: d(tangent)/d(arc length) = kappa * normal.
+  double curvature_change = 0;           // d(kappa)/d(arc length).
   ElementId element = ElementId::kNone;  // The piece it lies on.
   double arc_length = 0;
   double displaced = 0;  // How far from where the author put it: see kLiftTouches.
@@ -117,6 +135,7 @@ struct SceneTraits {
   bool environment = false;  // Light comes from infinitely far away, all around.
   bool grey = true;          // All channels equal everywhere.
   bool has_arcs = false;
+  bool has_beziers = false;  // That are not straight.
 };
 
 class Scene {
@@ -130,6 +149,15 @@ class Scene {
   double touch_distance() const { return touch_distance_; }
   const std::vector<Element>& elements() const { return elements_; }
   const std::vector<Curve>& curves() const { return curves_; }
+  const std::vector<Bezier>& beziers() const { return beziers_; }
+  const std::vector<BezierPiece>& bezier_pieces() const { return bezier_pieces_; }
+  // Null if the element stands for itself.
+  const BezierPiece* bezier_piece(const Element& element) const {
+    return element.bezier_piece == Element::kNoBezier ? nullptr : &bezier_pieces_[element.bezier_piece];
+  }
+  // How far the elements of Béziers are from these, and the largest sine of an angle between both; 0 if there are none.
+  double bezier_distance() const { return bezier_distance_; }
+  double bezier_tilt() const { return bezier_tilt_; }
   const std::vector<Light>& lights() const { return lights_; }
   const Spectrum& environment() const { return environment_; }  // Normalised radiance, from all directions.
   const std::vector<Probe>& probes() const { return probes_; }
@@ -154,6 +182,10 @@ class Scene {
   double touch_distance_ = 0;
   std::vector<Element> elements_;
   std::vector<Curve> curves_;
+  std::vector<Bezier> beziers_;
+  std::vector<BezierPiece> bezier_pieces_;
+  double bezier_distance_ = 0;
+  double bezier_tilt_ = 0;
   std::vector<Light> lights_;
   Spectrum environment_;
   std::vector<Probe> probes_;

@@ -203,8 +203,10 @@ class Validator {
       CheckPolyline(*polyline, path + ".polyline");
     } else if (const auto* arc = std::get_if<ArcDescription>(&curve.shape)) {
       CheckArc(*arc, path + ".arc");
+    } else if (const auto* bezier = std::get_if<BezierDescription>(&curve.shape)) {
+      CheckBezier(*bezier, path + ".bezier");
     } else {
-      diagnostics_.Add(path, "has no shape; allowed: segment, polyline, arc");
+      diagnostics_.Add(path, "has no shape; allowed: segment, polyline, arc, bezier");
     }
     if (curve.material.empty()) {
       diagnostics_.Add(path + ".material", "is missing or empty; the name of a material is needed");
@@ -257,6 +259,16 @@ class Validator {
     if (CheckRange(arc.sweep_angle, -2 * std::numbers::pi, 2 * std::numbers::pi, path + ".sweepAngle") &&
         arc.sweep_angle == 0) {
       diagnostics_.Add(path + ".sweepAngle", "is 0: the arc has zero length; allowed: -2 pi to 2 pi without 0");
+    }
+  }
+
+  void CheckBezier(const BezierDescription& bezier, const std::string& path) {
+    elements_ += 256;
+    const bool p0 = CheckPoint(bezier.p0, path + ".p0"), p1 = CheckPoint(bezier.p1, path + ".p1");
+    const bool p2 = CheckPoint(bezier.p2, path + ".p2"), p3 = CheckPoint(bezier.p3, path + ".p3");
+    if (p0 && p1 && p2 && p3 && bezier.p1 == bezier.p0 && bezier.p2 == bezier.p0 && bezier.p3 == bezier.p0) {
+      diagnostics_.Add(path, "has zero length: p0, p1, p2 and p3 are all (" + Number(bezier.p0.x) + ", " +
+                                 Number(bezier.p0.y) + "); one of them must differ");
     }
   }
 

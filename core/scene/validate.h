@@ -10,7 +10,7 @@ namespace flatlight {
 // What a scene may hold.
 struct SceneLimits {
   std::size_t max_curves = 4'000'000;
-  std::size_t max_elements = 16'000'000;  // Straight pieces; arcs count as up to 5.
+  std::size_t max_elements = 16'000'000;  // Straight pieces; arcs count as up to 5, Béziers as 256.
   std::size_t max_probe_points = 1'000'000;
   std::uint32_t max_picture_side = 16'384;        // Pixels.
   std::size_t max_pixels = std::size_t{2} << 20;  // Of all pictures.

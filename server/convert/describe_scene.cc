@@ -82,6 +82,8 @@ class Describer {
       curve.shape = Describe(proto.polyline(), Place{&place, "polyline"});
     } else if (proto.has_arc()) {
       curve.shape = Describe(proto.arc(), Place{&place, "arc"});
+    } else if (proto.has_bezier()) {
+      curve.shape = Describe(proto.bezier(), Place{&place, "bezier"});
     }
     curve.material = proto.material();
     if (proto.has_emission()) {
@@ -138,6 +140,15 @@ class Describer {
     arc.sweep_angle = Number(proto.has_sweep_angle(), proto.sweep_angle(), {&place, "sweepAngle"},
                              "a number from -2 pi to 2 pi and not 0, in radians,");
     return arc;
+  }
+
+  BezierDescription Describe(const v1::Bezier& proto, const Place& place) {
+    BezierDescription bezier;
+    bezier.p0 = Point(proto.has_p0(), proto.p0(), {&place, "p0"});
+    bezier.p1 = Point(proto.has_p1(), proto.p1(), {&place, "p1"});
+    bezier.p2 = Point(proto.has_p2(), proto.p2(), {&place, "p2"});
+    bezier.p3 = Point(proto.has_p3(), proto.p3(), {&place, "p3"});
+    return bezier;
   }
 
   SpotLightDescription Describe(const v1::SpotLight& proto, const Place& place) {

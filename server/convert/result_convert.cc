@@ -47,7 +47,7 @@ void FillProbeGeometry(const SceneOutline& scene, std::size_t probe, std::size_t
   if (on_curve) out.mutable_arc_length()->Reserve(out.arc_length_size() + size);
   for (std::size_t i = first; i < first + count; ++i) {
     const Receiver& receiver = source.receivers[i];
-    const Point2 position = scene.ToWorld(receiver.position);
+    const Point2 position = scene.ToWorld(receiver.position + receiver.offset);
     out.add_positions(position.x);
     out.add_positions(position.y);
     out.add_normals(receiver.normal.x);

@@ -36,6 +36,9 @@ constexpr Entry kEntries[] = {
      "well."},
     {"lens", "Lens with two lamps",
      "Glass gathers the light of each lamp on the other side, and turns the picture over."},
+    {"leaf", "Glass leaf",
+     "Every edge of a glass leaf bends in its own way, and so the light below gathers in folds and cusps on uneven "
+     "ground."},
     {"prism", "Prism", "A beam is bent twice by glass, and what meets the wall beyond came no straight way."},
     {"mirror-corridor", "Corridor of mirrors",
      "Two lamps between two mirrors light the end of the corridor like an endless row of lamps that grow dimmer."},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/plane/exact/edge.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flatlight {
@@ -33,6 +34,43 @@ Edge SilhouetteEdge(const Receiver& receiver, Vector2 touch, Vector2 inward) {
   const double toward = edge.c * Dot(receiver.tangent, inward) - edge.s * Dot(receiver.normal, inward);
   edge.signed_radius = std::copysign(Length(inward), toward);
   return edge;
+}
+
+Edge TrueEdge(const Scene& scene, const Receiver& receiver, const Edge& edge) {
+  if (edge.kind == Edge::Kind::kHorizon || edge.kind == Edge::Kind::kTouch) return edge;
+  Receiver itself = receiver;
+  itself.position = receiver.position + receiver.offset;
+  const bool touches = edge.kind == Edge::Kind::kSilhouette && edge.element != ElementId::kNone;
+  const Element* const element = touches ? &scene.element(edge.element) : nullptr;
+  const BezierPiece* const on = touches ? scene.bezier_piece(*element) : nullptr;
+  Edge found = VertexEdge(itself, edge.point);
+  found.kind = edge.kind, found.signed_radius = edge.signed_radius, found.element = edge.element;
+  found.crossing = edge.crossing;
+  found.turn = edge.turn, found.stretch = edge.stretch;
+  if (on == nullptr || !on->bends) return found;
+  const Bezier& bezier = scene.beziers()[on->bezier];
+  const Vector2 chord = element->b - element->a;
+  const double share = Dot(edge.point - element->a, chord) / LengthSquared(chord);
+  double u = on->from + share * (on->to - on->from);
+  // The touching point may be a little beyond the stretch.
+  const double reach = on->to - on->from;
+  const double low = std::max(0.0, on->from - reach), high = std::min(1.0, on->to + reach);
+  for (int i = 0; i < 20; ++i) {
+    // The sine of the angle between the direction and the tangent is 0, also where the curve comes to a stand nearby.
+    const Vector2 to = bezier.At(u) - itself.position, first = bezier.First(u);
+    const double turn = Cross(first, bezier.Second(u)) * Dot(to, first);
+    const double next = std::clamp(u - Cross(to, first) * LengthSquared(first) / turn, low, high);
+    if (!(std::abs(next - u) > 4 * kUnitRoundoff)) break;
+    u = next;
+  }
+  const Point2 touch = bezier.At(u);
+  if (!(Length(touch - edge.point) <= element->length)) return found;
+  found = VertexEdge(itself, touch);
+  found.kind = Edge::Kind::kSilhouette, found.element = edge.element;
+  // At an inflection, and where the curve stands still, the arc's.
+  const double radius = std::abs(1 / bezier.Curvature(u));
+  found.signed_radius = std::isfinite(radius) ? std::copysign(radius, edge.signed_radius) : edge.signed_radius;
+  return found;
 }
 
 Edge HorizonEdge(double sign) {

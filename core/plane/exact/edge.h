@@ -32,7 +32,9 @@ struct Edge {
   // Bounds on errors beyond those of the coordinates: of theta, and of the distance, relative.
   double turn = 0;
   double stretch = 0;
-  Point2 point;  // Not at the horizon.
+  Point2 point;                          // Not at the horizon.
+  ElementId element = ElementId::kNone;  // Silhouettes: the arc.
+  bool crossing = false;                 // Vertices: where two curves cross.
 
   double Distance() const { return 1 / q; }
 };
@@ -54,9 +56,13 @@ Edge VertexEdge(const Receiver& receiver, Point2 point);
 // `touch`: from the receiver to the touching point; `inward`: from there to the centre, of the circle's radius.
 Edge SilhouetteEdge(const Receiver& receiver, Vector2 touch, Vector2 inward);
 Edge HorizonEdge(double sign);
+// The same edge as a receiver on a Bézier sees it, or of one: at the place itself, with the Bézier's touching point and
+// its radius of curvature there, where elements stand for it to the distance Scene::bezier_distance().
+Edge TrueEdge(const Scene& scene, const Receiver& receiver, const Edge& edge);
 // A vertex whose components are known; without its key.
 inline void SetVertexEdge(double tangent, double normal, Point2 point, Edge& edge) {
   edge.kind = Edge::Kind::kVertex;
+  edge.crossing = false;
   edge.tangent = tangent, edge.normal = normal;
   edge.q = 1 / std::sqrt(tangent * tangent + normal * normal);
   edge.s = tangent * edge.q;
@@ -78,12 +84,12 @@ struct EdgeDerivatives {
   double s_first = 0;
   double s_second = 0;
 };
-inline EdgeDerivatives Derive(const Edge& edge, double curvature) {
+inline EdgeDerivatives Derive(const Edge& edge, double curvature, double curvature_change = 0) {
   if (edge.kind == Edge::Kind::kHorizon) return {};
   const double s = edge.s, c = edge.c, q = edge.q;
   EdgeDerivatives d;
   d.theta_first = curvature - c * q;
-  d.theta_second = curvature * s * q - 2 * s * c * q * q - edge.signed_radius * c * c * q * q * q;
+  d.theta_second = curvature_change + curvature * s * q - 2 * s * c * q * q - edge.signed_radius * c * c * q * q * q;
   d.s_first = c * d.theta_first;
   d.s_second = c * d.theta_second - s * d.theta_first * d.theta_first;
   return d;
@@ -95,7 +101,8 @@ struct EdgeErrors {
   double s_first = 0;
   double s_second = 0;
 };
-inline EdgeErrors BoundErrors(const Edge& edge, double curvature, double coordinate_error) {
+inline EdgeErrors BoundErrors(const Edge& edge, double curvature, double coordinate_error,
+                              double curvature_change = 0) {
   if (edge.kind == Edge::Kind::kHorizon) return {};
   // An edge may lie below the horizon by the accuracy of the coordinates.
   const double c = std::abs(edge.c), q = edge.q, k = std::abs(curvature), r = std::abs(edge.signed_radius);
@@ -109,15 +116,15 @@ inline EdgeErrors BoundErrors(const Edge& edge, double curvature, double coordin
   const double cq = c * q, ccq = c * c * q, ccqq = ccq * q;
   EdgeErrors e;
   e.s = std::min(2.0, (c + edge.turn) * turn) + 4 * u;
-  if (k == 0 && r == 0) {
+  if (k == 0 && r == 0 && curvature_change == 0) {
     e.s_first = (2 * cq + ccq) * turn + ccq * edge.stretch + 8 * u * ccq;
     e.s_second = (9 * cq * q + 6 * ccqq) * turn + 6 * ccqq * edge.stretch + 48 * u * ccqq;
   } else {
     const double relative_q = turn * (1 + r * q) + edge.stretch, rccqqq = r * ccqq * q;
     e.s_first = (k + 2 * cq) * turn + ccq * relative_q + 8 * u * (k * c + ccq);
-    e.s_second = (k * k + 6 * k * q + 9 * cq * q + 3 * rccqqq) * turn +
-                 (3 * k * cq + 6 * ccqq + 3 * c * rccqqq) * relative_q +
-                 16 * u * (k * k + 3 * k * cq + 3 * ccqq + c * rccqqq);
+    e.s_second =
+        (k * k + 6 * k * q + 9 * cq * q + 3 * rccqqq) * turn + (3 * k * cq + 6 * ccqq + 3 * c * rccqqq) * relative_q +
+        16 * u * (k * k + 3 * k * cq + 3 * ccqq + c * rccqqq) + std::abs(curvature_change) * (turn + 64 * u * c);
   }
   return {2 * e.s, 2 * e.s_first, 2 * e.s_second};
 }

@@ -245,6 +245,7 @@ int Envelope::Crossings(const Sight& sight, const Sight& other, const SightEnd& 
     crossing.uncertain = uncertain;
     crossing.point = points.point[i];
     crossing.kind = SightEnd::Kind::kVertex;
+    crossing.crossing = true;
   }
   if (count == 2 && crossings[1].key < crossings[0].key) std::swap(crossings[0], crossings[1]);
   // Hardly apart: a tangent, as far as one can tell.

@@ -46,6 +46,7 @@ class Envelope {
     if (end.kind == SightEnd::Kind::kVertex) {
       SetVertexEdge(end.tangent, end.normal, end.point, edge);
       if (sector.end >= kCrossing) AddCrossingError(sector.end - kCrossing, edge);
+      edge.crossing = end.crossing;
     } else {
       edge = end.kind == SightEnd::Kind::kHorizon ? HorizonEdge(end.tangent) : *end.edge;
     }

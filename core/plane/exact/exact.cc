@@ -17,7 +17,9 @@ template <int kChannels>
 class LightSum {
  public:
   LightSum(const Scene& scene, const ExactOptions& options, const Receiver& receiver, ExactValue& value)
-      : coordinate_error_(scene.coordinate_error() + receiver.displaced),
+      : scene_(scene),
+        coordinate_error_(scene.coordinate_error() + receiver.displaced),
+        is_true_(!scene.traits().has_beziers),
         derivatives_(options.derivatives),
         receiver_(receiver),
         value_(value) {}
@@ -38,10 +40,16 @@ class LightSum {
   void Turn(const Spectrum& after) { Turn(after, coordinate_error_); }
   // The same, where the edge is known to another accuracy than coordinates are.
   void Turn(const Spectrum& after, double coordinate_error) {
-    const Edge& edge = edges_[next_];
+    Edge& edge = edges_[next_];
+    if (!is_true_) {
+      edge = TrueEdge(scene_, receiver_, edge);
+      // Two curves cross where their elements do, to the distance of these.
+      if (edge.crossing) coordinate_error += scene_.bezier_distance();
+    }
     const Edge& begin = edges_[1 - next_];
-    const EdgeErrors errors = BoundErrors(edge, receiver_.curvature, coordinate_error);
-    const EdgeDerivatives derivatives = derivatives_ > 0 ? Derive(edge, receiver_.curvature) : EdgeDerivatives{};
+    const EdgeErrors errors = BoundErrors(edge, receiver_.curvature, coordinate_error, receiver_.curvature_change);
+    const EdgeDerivatives derivatives =
+        derivatives_ > 0 ? Derive(edge, receiver_.curvature, receiver_.curvature_change) : EdgeDerivatives{};
     const double extent = lit_ ? SineDifference(begin, edge, receiver_) : 0;
     lit_ = false;
     for (int channel = 0; channel < kChannels; ++channel) {
@@ -64,7 +72,9 @@ class LightSum {
   }
 
  private:
+  const Scene& scene_;
   const double coordinate_error_;
+  const bool is_true_;  // Elements are what they stand for.
   const int derivatives_;
   const Receiver& receiver_;
   ExactValue& value_;

@@ -28,7 +28,7 @@ Jet Falloff(Vector2 toward, const Receiver& receiver) {
   const double kappa = receiver.curvature;
   const double a = Dot(receiver.normal, toward), tau = Dot(receiver.tangent, toward);
   const double q = 1 / LengthSquared(toward);
-  const double a1 = -kappa * tau, a2 = kappa - kappa * kappa * a;
+  const double a1 = -kappa * tau, a2 = kappa - kappa * kappa * a - receiver.curvature_change * tau;
   return {a * q, a1 * q + 2 * a * tau * q * q,
           a2 * q + 4 * a1 * tau * q * q + a * (2 * (kappa * a - 1) * q * q + 8 * tau * tau * q * q * q)};
 }
@@ -66,7 +66,7 @@ void LightSolver::Add(const Receiver& receiver, ExactValue& value) const {
 }
 
 void LightSolver::AddPoint(const PointLight& light, const Receiver& receiver, ExactValue& value) const {
-  const Vector2 toward = light.position - receiver.position;
+  const Vector2 toward = light.position - (receiver.position + receiver.offset);
   const double distance = Length(toward);
   if (!(Dot(receiver.normal, toward) > 0)) return;
   if (!caster_.Visible({receiver.position, receiver.element}, {light.position, ElementId::kNone})) return;
@@ -90,7 +90,7 @@ void LightSolver::AddDirectional(const DirectionalLight& light, const Receiver& 
   if (caster_.ClosestHit({receiver.position, receiver.element}, toward).has_value()) return;
   const double kappa = receiver.curvature;
   const double uncertain = 16 * kUnitRoundoff + 4 * std::abs(kappa) * caster_.scene().coordinate_error();
-  AddTimes(light.irradiance, {cosine, -kappa * sine, -kappa * kappa * cosine},
+  AddTimes(light.irradiance, {cosine, -kappa * sine, -kappa * kappa * cosine - receiver.curvature_change * sine},
            {uncertain, std::abs(kappa) * uncertain, kappa * kappa * uncertain}, value);
 }
 

@@ -32,10 +32,15 @@ class PartBuilder {
   Parts Build() {
     const bool own =
         receiver_.element != ElementId::kNone && scene_.element(receiver_.element).carrier == element_.carrier;
-    if (!own && MayTouch() && TouchesReceiver(scene_, element_, receiver_))
+    const bool own_run = InOwnRun();
+    if (!own && !own_run && MayTouch() && TouchesReceiver(scene_, element_, receiver_))
       return TouchingParts(scene_, id_, receiver_);
     if (element_.kind == Element::Kind::kSegment) {
       if (!own) Add(Part::Kind::kStraight, VertexEdge(receiver_, element_.a), VertexEdge(receiver_, element_.b));
+    } else if (own_run) {
+      // The receiver's own Bézier, which bends to one side: seen from its hollow side, and up to the receiver.
+      const Element& own_element = scene_.element(receiver_.element);
+      if (Dot(receiver_.normal, own_element.center - receiver_.position) >= 0) BuildOwnRun();
     } else if (own) {
       BuildOwnCircle();
     } else {
@@ -69,6 +74,25 @@ class PartBuilder {
       AddAbove(Part::Kind::kConcave, at_a ? HorizonEdge(ahead) : OwnVertex(element_.a),
                at_b ? HorizonEdge(-ahead) : OwnVertex(element_.b));
     }
+  }
+
+  bool InOwnRun() const {
+    const BezierPiece* const on = scene_.bezier_piece(element_);
+    if (on == nullptr || !on->bends || receiver_.element == ElementId::kNone) return false;
+    const BezierPiece* const from = scene_.bezier_piece(scene_.element(receiver_.element));
+    return from != nullptr && from->bends && from->run == on->run;
+  }
+
+  // The receiver looks along the Bézier, not along the arc: each end is above its horizon or not, for both arcs that
+  // meet there alike.
+  void BuildOwnRun() {
+    const Edge a = VertexEdge(receiver_, element_.a), b = VertexEdge(receiver_, element_.b);
+    if (id_ != receiver_.element) return Add(Part::Kind::kConcave, a, b);
+    const Vector2 along =
+        element_.Orientation() * Left(element_.radial_a + (receiver_.position - element_.a) / element_.radius);
+    const double ahead = Dot(along, receiver_.tangent) >= 0 ? 1 : -1;
+    if (Above(a)) AddAbove(Part::Kind::kConcave, a, HorizonEdge(-ahead));
+    if (Above(b)) AddAbove(Part::Kind::kConcave, HorizonEdge(ahead), b);
   }
 
   bool IsOwnPlace(Point2 point) const { return Length(point - receiver_.position) <= scene_.touch_distance(); }
@@ -137,19 +161,31 @@ class PartBuilder {
   // agree, light ends at the touching point, which moves in another way.
   Edge EndEdge(const CircleView& view, Point2 end, Vector2 radial, double side) const {
     const Edge vertex = VertexEdge(receiver_, end);
-    if (!(view.f > 0) || !GoesOnBeyond(radial)) return vertex;
-    const Edge silhouette = Silhouette(view, side);
+    if (!(view.f > 0) || !GoesOnBeyond(end, radial)) return vertex;
     const double near = 8 * kUnitRoundoff + 4 * scene_.coordinate_error() * vertex.q;
-    const bool same =
-        std::abs(silhouette.tangent * vertex.normal - silhouette.normal * vertex.tangent) * silhouette.q * vertex.q <=
-            near &&
-        std::abs(silhouette.q - vertex.q) <= 1e-6 * vertex.q;
-    return same ? silhouette : vertex;
+    // Before the end, as a rule; or a little beyond it, on the piece that begins there.
+    for (const double at : {side, -side}) {
+      const Edge silhouette = Silhouette(view, at);
+      const double aside = silhouette.tangent * vertex.normal - silhouette.normal * vertex.tangent;
+      if (std::abs(aside) * silhouette.q * vertex.q <= near && std::abs(silhouette.q - vertex.q) <= 1e-6 * vertex.q)
+        return silhouette;
+    }
+    return vertex;
   }
 
-  // Whether another arc of the same circle meets this one at the end in that direction.
-  bool GoesOnBeyond(Vector2 radial) const {
+  // Whether another arc of the same circle, or of the same Bézier bent to the same side, meets this one at the end in
+  // that direction.
+  bool GoesOnBeyond(Point2 end, Vector2 radial) const {
     const Curve& curve = scene_.curve(element_.curve);
+    if (const BezierPiece* const on = scene_.bezier_piece(element_)) {
+      const bool at_a = end == element_.a;
+      const auto e = static_cast<std::uint32_t>(id_) + (at_a ? 0xffffffffU : 1U);
+      if (e < curve.first_element || e >= curve.first_element + curve.element_count) return false;
+      const Element& other = scene_.elements()[e];
+      const BezierPiece* const beside = scene_.bezier_piece(other);
+      return beside != nullptr && other.kind == Element::Kind::kArc && beside->bezier == on->bezier &&
+             (at_a ? other.b : other.a) == end && (at_a ? other.radial_b : other.radial_a) == radial;
+    }
     for (std::uint32_t e = curve.first_element; e < curve.first_element + curve.element_count; ++e) {
       const Element& other = scene_.elements()[e];
       if (static_cast<ElementId>(e) != id_ && other.carrier == element_.carrier &&
@@ -166,7 +202,9 @@ class PartBuilder {
     const double squared = LengthSquared(view.v);
     const Vector2 direction = (-root * view.v + side * Left(view.v)) / squared;
     const Vector2 outward = (view.v + side * root * Left(view.v)) / squared;
-    return SilhouetteEdge(receiver_, element_.radius * root * direction, -element_.radius * outward);
+    Edge edge = SilhouetteEdge(receiver_, element_.radius * root * direction, -element_.radius * outward);
+    edge.element = id_;
+    return edge;
   }
 
   bool Above(const Edge& edge) const {

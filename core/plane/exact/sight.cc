@@ -31,6 +31,7 @@ void SetVertex(const Local& local, Point2 point, double doubt, SightEnd& end) {
   end.uncertain = doubt * inverse + 2 * kRoundoffs;
   end.point = point;
   end.kind = SightEnd::Kind::kVertex;
+  end.crossing = false;
 }
 
 void SetHorizon(double sign, SightEnd& end) {

@@ -25,6 +25,7 @@ struct SightEnd {
   Point2 point;                // kVertex.
   const Edge* edge = nullptr;  // kEdge.
   Kind kind = Kind::kVertex;
+  bool crossing = false;  // kVertex: where two elements cross.
 
   bool SamePlace(const SightEnd& other) const {
     return tangent == other.tangent && normal == other.normal &&

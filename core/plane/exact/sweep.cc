@@ -29,6 +29,12 @@ constexpr double kSameKey = 1e-13;
 // Each piece that is seen splits an interval once, and halves it at every other one.
 constexpr int kMaxDepth = 128;
 
+Edge CrossingEdge(const Receiver& receiver, Point2 point) {
+  Edge edge = VertexEdge(receiver, point);
+  edge.crossing = true;
+  return edge;
+}
+
 }  // namespace
 
 const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, const Receiver& receiver) {
@@ -175,7 +181,7 @@ void Sweep::ResolveCoinciding(const Edge& from, const Edge& to) {
   if (distance >= to.Distance() * (1 - kTie)) return;
   const UnitDirection direction(key);
   const Vector2 along = direction.tangent * receiver_->tangent + direction.normal * receiver_->normal;
-  Emit(VertexEdge(*receiver_, receiver_->position + distance * along), other);
+  Emit(CrossingEdge(*receiver_, receiver_->position + distance * along), other);
 }
 
 bool Sweep::InFront(std::uint32_t p, std::uint32_t other, double key, double distance) const {
@@ -297,7 +303,7 @@ void Sweep::AddCrossings(std::uint32_t first, std::uint32_t second, double low, 
   const ElementCrossings points = CrossElements(e, f, scene_.touch_distance());
   for (int i = 0; i < points.count; ++i) {
     if (Length(points.point[i] - receiver_->position) <= 2 * scene_.touch_distance()) continue;
-    Edge edge = VertexEdge(*receiver_, points.point[i]);
+    Edge edge = CrossingEdge(*receiver_, points.point[i]);
     const double uncertain = Uncertainty(edge);
     if (!(edge.normal > 0 && edge.key > low + uncertain && edge.key < high - uncertain)) continue;
     AddMeetingError(scene_, *receiver_, e, f, edge);
@@ -351,7 +357,7 @@ Edge Sweep::BreakBetween(const Edge& from, std::int32_t part) const {
     const ElementCrossings points =
         own ? CrossElements(e, f, scene_.touch_distance()) : CrossElements(f, e, scene_.touch_distance());
     for (int i = 0; i < points.count; ++i) {
-      Edge edge = VertexEdge(*receiver_, points.point[i]);
+      Edge edge = CrossingEdge(*receiver_, points.point[i]);
       if (!(edge.normal > 0 && std::abs(edge.key - from.key) <= 4 * (Uncertainty(edge) + Uncertainty(from)))) continue;
       AddMeetingError(scene_, *receiver_, e, f, edge);
       return edge;

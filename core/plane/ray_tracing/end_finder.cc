@@ -14,6 +14,12 @@ bool LiesBetween(const Edge& edge, const GatheredRay& near, const GatheredRay& f
   return between && edge.c > 0;
 }
 
+// Whether one element of a Bézier goes over into the next without a corner.
+bool GoesOn(const Element& before, const Element& after) {
+  return before.b == after.a && before.kind == Element::Kind::kArc && after.kind == Element::Kind::kArc &&
+         before.Orientation() * after.Orientation() * Dot(before.radial_b, after.radial_a) > 0;
+}
+
 }  // namespace
 
 std::optional<Edge> EndFinder::Between(const GatheredRay& a, const GatheredRay& b) const {
@@ -23,8 +29,10 @@ std::optional<Edge> EndFinder::Between(const GatheredRay& a, const GatheredRay& 
   const Element& piece = scene_.element(near.element);
   // An arc that turns away ends there, wherever its own end hides.
   if (piece.kind == Element::Kind::kArc) {
-    if (const std::optional<Edge> found = Silhouette(piece, near, far)) return found;
+    if (const std::optional<Edge> found = Silhouette(near.element, near, far)) return found;
   }
+  // A Bézier goes on through elements that no ray has met.
+  if (const BezierPiece* on = scene_.bezier_piece(piece)) return OnBezier(*on, piece, near, far);
   for (const Point2 end : {piece.a, piece.b}) {
     if (end == receiver_.position) continue;
     const Edge edge = VertexEdge(receiver_, end);
@@ -33,7 +41,32 @@ std::optional<Edge> EndFinder::Between(const GatheredRay& a, const GatheredRay& 
   return std::nullopt;
 }
 
-std::optional<Edge> EndFinder::Silhouette(const Element& piece, const GatheredRay& near, const GatheredRay& far) const {
+std::optional<Edge> EndFinder::OnBezier(const BezierPiece& on, const Element& piece, const GatheredRay& near,
+                                        const GatheredRay& far) const {
+  const Curve& curve = scene_.curve(piece.curve);
+  const Element* last = nullptr;
+  for (std::uint32_t e = 0; e < curve.element_count; ++e) {
+    const auto id = static_cast<ElementId>(curve.first_element + e);
+    const Element& other = scene_.element(id);
+    const BezierPiece* const beside = scene_.bezier_piece(other);
+    if (beside == nullptr || beside->bezier != on.bezier) continue;
+    if (id != near.element && other.kind == Element::Kind::kArc) {
+      if (const std::optional<Edge> found = Silhouette(id, near, far)) return found;
+    }
+    // Its own ends, and the tips of its cusps.
+    if (last == nullptr || !GoesOn(*last, other)) {
+      const Edge edge = VertexEdge(receiver_, other.a);
+      if (other.a != receiver_.position && LiesBetween(edge, near, far)) return edge;
+    }
+    last = &other;
+  }
+  if (last == nullptr) return std::nullopt;
+  const Edge edge = VertexEdge(receiver_, last->b);
+  return last->b != receiver_.position && LiesBetween(edge, near, far) ? std::optional(edge) : std::nullopt;
+}
+
+std::optional<Edge> EndFinder::Silhouette(ElementId id, const GatheredRay& near, const GatheredRay& far) const {
+  const Element& piece = scene_.element(id);
   const Vector2 to_center = piece.center - receiver_.position;
   const double squared = LengthSquared(to_center), beyond = squared - piece.radius * piece.radius;
   if (!(beyond > 0)) return std::nullopt;  // From inside there is none.
@@ -42,9 +75,10 @@ std::optional<Edge> EndFinder::Silhouette(const Element& piece, const GatheredRa
   const bool left = Cross(near.to, far.sine * receiver_.tangent + far.cosine * receiver_.normal) > 0;
   const Vector2 aside = (left ? piece.radius : -piece.radius) * Left(to_center);
   const Vector2 to = (tangent_length / squared) * (tangent_length * to_center + aside);
-  const Edge edge = SilhouetteEdge(receiver_, to, to_center - to);
+  Edge edge = SilhouetteEdge(receiver_, to, to_center - to);
+  edge.element = id;
   if (!LiesBetween(edge, near, far) || !OnArc(scene_.curve(piece.curve), piece, edge.point)) return std::nullopt;
-  return edge;
+  return scene_.bezier_piece(piece) != nullptr ? TrueEdge(scene_, receiver_, edge) : edge;
 }
 
 bool EndFinder::OnArc(const Curve& curve, const Element& piece, Point2 point) const {

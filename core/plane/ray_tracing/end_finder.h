@@ -20,7 +20,10 @@ class EndFinder {
   std::optional<Edge> Between(const GatheredRay& a, const GatheredRay& b) const;
 
  private:
-  std::optional<Edge> Silhouette(const Element& piece, const GatheredRay& near, const GatheredRay& far) const;
+  std::optional<Edge> Silhouette(ElementId piece, const GatheredRay& near, const GatheredRay& far) const;
+  // On the Bézier that a piece follows.
+  std::optional<Edge> OnBezier(const BezierPiece& on, const Element& piece, const GatheredRay& near,
+                               const GatheredRay& far) const;
   // Whether some piece of the curve on the circle of `piece` has the point.
   bool OnArc(const Curve& curve, const Element& piece, Point2 point) const;
 

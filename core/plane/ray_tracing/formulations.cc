@@ -24,24 +24,24 @@ Edge FixedEdge(double sine, double inverse_distance) {
 // A sum of radiance times the motion of breaks.
 class MotionSum {
  public:
-  explicit MotionSum(double kappa) : kappa_(kappa) {}
+  explicit MotionSum(const Receiver& receiver) : receiver_(receiver) {}
 
   void Add(const Spectrum& radiance, const Edge& at) {
-    const EdgeDerivatives motion = Derive(at, kappa_);
+    const EdgeDerivatives motion = Derive(at, receiver_.curvature, receiver_.curvature_change);
     sum_.first = sum_.first + motion.s_first * radiance;
     sum_.second = sum_.second + motion.s_second * radiance;
   }
   const GatherDerivatives& sum() const { return sum_; }
 
  private:
-  double kappa_;
+  const Receiver& receiver_;
   GatherDerivatives sum_;
 };
 
 }  // namespace
 
 GatherDerivatives StratifiedDerivatives(const Receiver& receiver, const std::vector<GatheredRay>& gathered) {
-  MotionSum sum(receiver.curvature);
+  MotionSum sum(receiver);
   for (std::size_t k = 1; k < gathered.size(); ++k) {
     const GatheredRay &before = gathered[k - 1], &after = gathered[k];
     const Edge between = FixedEdge(after.begin, std::max(before.InverseDistance(), after.InverseDistance()));
@@ -51,7 +51,7 @@ GatherDerivatives StratifiedDerivatives(const Receiver& receiver, const std::vec
 }
 
 GatherDerivatives PolylineDerivatives(const Receiver& receiver, const std::vector<GatheredRay>& gathered) {
-  MotionSum sum(receiver.curvature);
+  MotionSum sum(receiver);
   // By parts: each vertex moves the difference of the pieces beside it; the horizon does not move.
   Spectrum left = gathered.front().radiance;
   for (std::size_t k = 0; k < gathered.size(); ++k) {
@@ -80,7 +80,8 @@ GatherDerivatives ArcLengthDerivatives(const Receiver& receiver, const std::vect
       // Light from infinitely far turns with the receiver alone: E' = -kappa sin, E'' = -kappa^2 cos, over cos.
       const double cosine = std::max(ray.cosine, kLeastCosine), stretch = ray.end - ray.begin;
       sum.first = sum.first + (-stretch * kappa * ray.sine / cosine) * ray.radiance;
-      sum.second = sum.second + (-stretch * kappa * kappa) * ray.radiance;
+      sum.second =
+          sum.second + (-stretch * (kappa * kappa + receiver.curvature_change * ray.sine / cosine)) * ray.radiance;
       continue;
     }
     const double tau = Dot(receiver.tangent, ray.to), a = Dot(receiver.normal, ray.to);
@@ -88,7 +89,7 @@ GatherDerivatives ArcLengthDerivatives(const Receiver& receiver, const std::vect
     const double least = kLeastCosine * distance;
     const double b = std::max(-Dot(ray.normal, ray.to), least), steep = std::max(a, least);
     // Of the factors of the geometry term a b / distance^3, with the receiver's motion along its tangent.
-    const double a1 = -kappa * tau, a2 = kappa - kappa * kappa * a;
+    const double a1 = -kappa * tau, a2 = kappa - kappa * kappa * a - receiver.curvature_change * tau;
     const double b1 = Dot(ray.normal, receiver.tangent), b2 = kappa * Dot(ray.normal, receiver.normal);
     const double u1 = 3 * tau * q, u2 = 3 * (kappa * a - 1) * q + 15 * tau * tau * q * q;
     const double p1 = a1 / steep + b1 / b, p2 = a2 / steep + 2 * a1 * b1 / (steep * b) + b2 / b;

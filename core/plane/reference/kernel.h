@@ -37,7 +37,7 @@ class Kernel {
     double first = 0;
     double second = 0;
   };
-  // Along the receiver's tangent, of constant curvature.
+  // Along the receiver's tangent.
   Derivatives Derive() const {
     if (half_curvature_ != 0) {
       // r' = -sin theta, sin' theta = r/(4 R^2).
@@ -46,7 +46,7 @@ class Kernel {
     }
     const double k = receiver_.curvature;
     const double u = 1 / (q_ * root_), u5 = u / q_, u7 = u5 / q_;
-    const double a1 = -k * tau_, a2 = -k * k * a_ + k;
+    const double a1 = -k * tau_, a2 = -k * k * a_ + k - receiver_.curvature_change * tau_;
     const double b1 = Dot(emitter_normal_, receiver_.tangent), b2 = k * Dot(emitter_normal_, receiver_.normal);
     const double u1 = 3 * tau_ * u5, u2 = 3 * (k * a_ - 1) * u5 + 15 * tau_ * tau_ * u7;
     const double p = a_ * b_, p1 = a1 * b_ + a_ * b1, p2 = a2 * b_ + 2 * a1 * b1 + a_ * b2;

@@ -21,6 +21,14 @@ bool Apart(const Element& e, const Element& f, double near) {
   return LengthSquared(e.a - f.a) > reach * reach;
 }
 
+// Whether a Bézier goes over from one element into the other: no corner, nothing meets there.
+bool GoesOn(const Scene& scene, const Element& e, const Element& f) {
+  const BezierPiece *const before = scene.bezier_piece(e), *const after = scene.bezier_piece(f);
+  if (before == nullptr || after == nullptr || before->bezier != after->bezier || e.b != f.a) return false;
+  if (e.kind != Element::Kind::kArc || f.kind != Element::Kind::kArc) return false;
+  return e.Orientation() * f.Orientation() * Dot(e.radial_b, f.radial_a) > 0;
+}
+
 void AddGraded(double from, double to, bool at_from, bool at_to, int steps, std::vector<double>& cuts) {
   const double middle = 0.5 * (from + to);
   if (at_from) {
@@ -48,7 +56,7 @@ std::vector<std::vector<double>> Meetings(const Scene& scene, const std::vector<
   for (std::size_t i = 0; i < elements.size(); ++i) {
     for (std::size_t j = i + 1; j < elements.size(); ++j) {
       const Element &e = elements[i], &f = elements[j];
-      if (e.carrier == f.carrier || Apart(e, f, near)) continue;
+      if (e.carrier == f.carrier || Apart(e, f, near) || GoesOn(scene, e, f)) continue;
       for (const Point2 p : {e.a, e.b})
         if (DistanceTo(f, p) <= near) add(i, p), add(j, p);
       for (const Point2 p : {f.a, f.b})

@@ -20,8 +20,10 @@ Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const Pa
                        const LightErrors* errors, int derivatives) {
   Received sum;
   shares_.clear();
+  end_errors_ = EndErrors(scene_);
   for (const VisiblePiece& piece : outlook_.From(receiver))
     AddPiece(receiver, mesh, light, errors, derivatives, piece, sum);
+  for (std::size_t c = 0; c < light.channels(); ++c) sum.rounding[0].value[c] += end_errors_.joints();
   return sum;
 }
 
@@ -100,7 +102,9 @@ void Reception::AddEnd(const Receiver& receiver, const PanelMesh& mesh, const Pa
   double p[kLightCoefficients], slopes[kLightCoefficients];
   LegendreWithSlopes(panel.Local(end.u), kLightCoefficients, p, slopes);
 
-  const EdgeErrors rounding = BoundErrors(end.edge, receiver.curvature, scene_.coordinate_error());
+  double brightest = 0;
+  for (std::size_t c = 0; c < channels; ++c) brightest = std::max(brightest, std::abs(light.At(i, c, p)));
+  const EdgeErrors rounding = end_errors_.Add(receiver, piece.element, end, brightest);
   const double roundings[3] = {rounding.s, rounding.s_first, rounding.s_second};
   double first = 0, second = 0, slope_factor = 0, speed = 1;
   if (derivatives > 0 && !(end.own && end.edge.kind == Edge::Kind::kVertex)) {

@@ -10,6 +10,7 @@
 #include "core/plane/reference/outlook.h"
 #include "core/plane/reference/panel_light.h"
 #include "core/plane/reference/panel_mesh.h"
+#include "core/plane/reference/row.h"
 #include "core/plane/reference/stretch.h"
 #include "core/scene/spectrum.h"
 
@@ -41,7 +42,8 @@ class Reception {
       : scene_(caster.scene()),
         charts_(charts),
         count_(kLightCoefficients + 2, kKernelDigits),
-        outlook_(caster, charts) {}
+        outlook_(caster, charts),
+        end_errors_(caster.scene()) {}
 
   // `errors` may be null. `derivatives` 0, 1 or 2.
   Received At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
@@ -61,6 +63,7 @@ class Reception {
   PointCount count_;
   Outlook outlook_;
   std::vector<std::pair<std::size_t, double>> shares_;
+  EndErrors end_errors_;
 };
 
 }  // namespace flatlight

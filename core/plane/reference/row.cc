@@ -18,6 +18,15 @@ double OwnRadius(const Scene& scene, const Receiver& receiver, ElementId element
   return e.radius;
 }
 
+EdgeErrors EndErrors::Add(const Receiver& receiver, ElementId element, const PieceEnd& end, double radiance) {
+  const double known = scene_->coordinate_error(), followed = known + scene_->bezier_distance();
+  const BezierPiece* const on = scene_->bezier_piece(scene_->element(element));
+  const bool joint =
+      on != nullptr && end.own && end.edge.kind == Edge::Kind::kVertex && (end.u == 0 ? on->from > 0 : on->to < 1);
+  if (joint) joints_ = std::max(joints_, radiance * BoundErrors(end.edge, receiver.curvature, followed).s);
+  return BoundErrors(end.edge, receiver.curvature, joint ? known : followed, receiver.curvature_change);
+}
+
 double SineBetween(const Chart& chart, const Receiver& receiver, double low, double high) {
   double sine[2];
   for (int i = 0; i < 2; ++i) {
@@ -35,10 +44,16 @@ void RowBuilder::Build(const PanelMesh& mesh, const Receiver& receiver, bool hig
   row.coordinates = 0;
   before_ = before;
   next_before_ = 0;
+  EndErrors errors(scene_);
   for (const VisiblePiece& piece : outlook_.From(receiver)) {
     AddPiece(mesh, receiver, piece, high, row);
     for (const PieceEnd& end : {piece.begin, piece.end})
-      row.coordinates += BoundErrors(end.edge, receiver.curvature, scene_.coordinate_error()).s;
+      row.coordinates += errors.Add(receiver, piece.element, end, 1).s;
+  }
+  row.coordinates += errors.joints();
+  // The receivers of the equation look along elements, not along the Béziers that they stand for.
+  if (receiver.element != ElementId::kNone) {
+    if (const BezierPiece* on = scene_.bezier_piece(scene_.element(receiver.element))) row.coordinates += 4 * on->tilt;
   }
   row.direct = before ? before->direct : outlook_.Direct(receiver);
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/plane/exact/edge.h"
 #include "core/plane/reference/outlook.h"
 #include "core/plane/reference/panel_light.h"
 #include "core/plane/reference/panel_mesh.h"
@@ -67,6 +68,22 @@ class RowBuilder {
 
 // Whether a receiver lies on the circle of an element, inside; then that circle's radius, else 0.
 double OwnRadius(const Scene& scene, const Receiver& receiver, ElementId element);
+
+// What the end of a piece adds to the error of an integral over sines, for light of radiance 1, as coordinates are
+// known and as elements follow Béziers. Where one element of a Bézier ends and the next begins light goes on, and what
+// both ends are off by cancels, but for the light's own change along the curve (THEORY 18 B6, by parts): the largest of
+// all those counts, not the sum.
+class EndErrors {
+ public:
+  explicit EndErrors(const Scene& scene) : scene_(&scene) {}
+  // Of one end, without what is known of all joints together.
+  EdgeErrors Add(const Receiver& receiver, ElementId element, const PieceEnd& end, double radiance);
+  double joints() const { return 4 * joints_; }
+
+ private:
+  const Scene* scene_;
+  double joints_ = 0;
+};
 
 // The difference of the sines of the directions to two places of an element.
 double SineBetween(const Chart& chart, const Receiver& receiver, double low, double high);

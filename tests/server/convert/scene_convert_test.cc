@@ -115,6 +115,29 @@ TEST(SceneConvertTest, KnowsEveryMaterialAndLight) {
   EXPECT_DOUBLE_EQ(scene->frame().radiance_scale * scene->environment()[2], 0.25);
 }
 
+TEST(SceneConvertTest, BeziersComeOver) {
+  v1::Scene proto;
+  Diagnostics diagnostics;
+  const auto scene = SceneFromJson(
+      R"({"name": "b", "plane": {"materials": [{"name": "m", "lambertian": {"reflectance": [0]}}],
+          "curves": [{"name": "c", "bezier": {"p0": {"x": 0, "y": 1}, "p1": {"x": 2, "y": 3}, "p2": {"x": 4, "y": 5.5},
+                      "p3": {"x": 6, "y": 0}}, "material": "m"}]},
+          "probes": [{"name": "p", "curve": "c", "count": 2}]})",
+      proto, diagnostics);
+  ASSERT_TRUE(scene) << diagnostics.kept()[0].path << diagnostics.kept()[0].message;
+  ASSERT_EQ(scene->beziers().size(), 1U);
+  EXPECT_EQ(scene->ToWorld(scene->beziers()[0].p[0]), (Point2{0, 1}));
+  EXPECT_EQ(scene->ToWorld(scene->beziers()[0].p[1]), (Point2{2, 3}));
+  EXPECT_EQ(scene->ToWorld(scene->beziers()[0].p[2]), (Point2{4, 5.5}));
+  EXPECT_EQ(scene->ToWorld(scene->beziers()[0].p[3]), (Point2{6, 0}));
+  proto.mutable_plane()->mutable_curves(0)->mutable_bezier()->clear_p2();
+  proto.mutable_plane()->mutable_curves(0)->mutable_bezier()->mutable_p3()->clear_y();
+  EXPECT_FALSE(SceneFromProto(proto, diagnostics));
+  ASSERT_EQ(diagnostics.count(), 2U);
+  EXPECT_EQ(diagnostics.kept()[0].path, "plane.curves[0].bezier.p2");
+  EXPECT_EQ(diagnostics.kept()[1].path, "plane.curves[0].bezier.p3.y");
+}
+
 struct Removal {
   const char* path;
   std::function<void(v1::Scene&)> remove;

@@ -40,6 +40,14 @@ SceneMaker& SceneMaker::Arc(const std::string& name, const ArcDescription& arc, 
   return *this;
 }
 
+SceneMaker& SceneMaker::Bezier(const std::string& name, const BezierDescription& bezier, const Look& look) {
+  CurveDescription curve;
+  curve.name = name;
+  curve.shape = bezier;
+  AddCurve(std::move(curve), look);
+  return *this;
+}
+
 SceneMaker& SceneMaker::Light(LightKind light) {
   description_.lights.push_back({"light " + std::to_string(description_.lights.size()), std::move(light)});
   return *this;

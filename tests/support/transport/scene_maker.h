@@ -33,6 +33,7 @@ class SceneMaker {
   SceneMaker& Segment(const std::string& name, Point2 a, Point2 b, const Look& look = {});
   SceneMaker& Polyline(const std::string& name, std::vector<Point2> points, bool closed, const Look& look = {});
   SceneMaker& Arc(const std::string& name, const ArcDescription& arc, const Look& look = {});
+  SceneMaker& Bezier(const std::string& name, const BezierDescription& bezier, const Look& look = {});
   SceneMaker& Light(LightKind light);
   SceneMaker& Environment(SpectrumValues radiance);
   SceneMaker& Probe(const std::string& curve, std::uint32_t count, Side side = Side::kFront);

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exact light of Bézier curves: as receivers, emitters and blockers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/plane/exact/exact.h"
+#include "core/scene/scene.h"
+#include "tests/core/plane/exact/bezier_oracle.h"
+#include "tests/core/plane/exact/test_scenes.h"
+
+namespace flatlight {
+namespace {
+
+constexpr BezierDescription kArch{{-0.9, 0.9}, {-0.5, 1.7}, {0.7, 1.6}, {0.8, 0.8}};
+constexpr BezierDescription kBulge{{0.4, 0.5}, {0.1, 0.75}, {-0.15, 0.65}, {-0.3, 0.45}};
+constexpr BezierDescription kValley{{-1, 0.1}, {-0.4, -0.3}, {0.3, -0.25}, {1, 0.15}};
+constexpr BezierDescription kWave{{-1, -0.1}, {-0.2, 0.45}, {0.1, -0.6}, {1, 0.05}};
+// Turns by more than a quarter, and less than half, so that it hides much from itself.
+constexpr BezierDescription kHook{{-0.3, 0.2}, {0.5, 0.9}, {0.55, 1.05}, {0.4, 0.6}};
+constexpr SegmentDescription kFloor{{-1, -0.2}, {1, -0.3}};
+constexpr SegmentDescription kLamp{{0.6, 1.2}, {-0.7, 1.25}};
+
+BezierDescription Reversed(const BezierDescription& b) { return {b.p3, b.p2, b.p1, b.p0}; }
+
+// Every point of every probe.
+void Compare(const SceneDescription& description, const std::string& what) {
+  const auto scene = Build(description);
+  ASSERT_TRUE(scene);
+  const BezierOracle oracle(description);
+  int skipped = 0, points = 0;
+  for (std::size_t p = 0; p < description.probes.size(); ++p) {
+    const ProbeDescription& probe = description.probes[p];
+    const std::size_t curve = std::stoul(probe.curve->substr(1));
+    const std::vector<WorldValue> values = Solve(*scene, p);
+    points += static_cast<int>(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const Receiver& receiver = scene->probes()[p].receivers[i];
+      const Point2 at = scene->ToWorld(receiver.position + receiver.offset);
+      const auto u = oracle.Find(curve, at.x, at.y);
+      const auto truth = oracle.OnCurve(curve, u, *probe.side == Side::kBack ? -1 : 1);
+      if (!truth) {
+        ++skipped;
+        continue;
+      }
+      const WorldValue& v = values[i];
+      const std::string where = what + ", probe " + std::to_string(p) + ", point " + std::to_string(i);
+      EXPECT_LE(v.irradiance_error, 1e-13) << where;
+      EXPECT_NEAR(v.irradiance, truth->irradiance, v.irradiance_error + 1e-16) << where;
+      EXPECT_NEAR(v.gradient, truth->gradient, v.gradient_error + 1e-10 * (1 + std::abs(truth->gradient))) << where;
+      EXPECT_NEAR(v.hessian, truth->hessian, v.hessian_error + 3e-9 * (1 + std::abs(truth->hessian))) << where;
+    }
+  }
+  EXPECT_LT(10 * skipped, points) << what;
+}
+
+TEST(BezierTest, Emitter) {
+  for (const BezierDescription& arch : {kArch, Reversed(kArch), kWave}) {
+    SceneDescription scene = EmptyScene();
+    AddCurve(scene, SegmentDescription{{-1, -0.6}, {1, -0.7}});
+    AddCurve(scene, arch, 2);
+    AddProbe(scene, 0, 23);
+    Compare(scene, "emitter");
+  }
+}
+
+TEST(BezierTest, Blocker) {
+  for (const BezierDescription& blocker : {kBulge, Reversed(kBulge)}) {
+    SceneDescription scene = EmptyScene();
+    AddCurve(scene, kFloor);
+    AddCurve(scene, kLamp, 3);
+    AddCurve(scene, blocker);
+    AddProbe(scene, 0, 29);
+    Compare(scene, "blocker");
+  }
+}
+
+TEST(BezierTest, Receiver) {
+  for (const BezierDescription& receiver : {kValley, kWave, kBulge, Reversed(kValley), kHook}) {
+    SceneDescription scene = EmptyScene();
+    AddCurve(scene, receiver);
+    AddCurve(scene, kLamp, 3);
+    AddProbe(scene, 0, 31);
+    AddProbe(scene, 0, 31, Side::kBack);
+    Compare(scene, "receiver");
+  }
+}
+
+TEST(BezierTest, ReceiverEmitterAndBlockerAtOnce) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, kValley, 0.7);
+  AddCurve(scene, Reversed(kArch), 3);
+  AddCurve(scene, kBulge, 1.3);
+  AddProbe(scene, 0, 37);
+  AddProbe(scene, 1, 19);
+  AddProbe(scene, 1, 19, Side::kBack);
+  AddProbe(scene, 2, 17);
+  AddProbe(scene, 2, 17, Side::kBack);
+  Compare(scene, "all");
+}
+
+SceneDescription Everything(const BezierDescription& receiver, double scale) {
+  const auto at = [&](Point2 p) { return Point2{scale * p.x, scale * p.y}; };
+  const auto scaled = [&](const BezierDescription& b) {
+    return BezierDescription{at(b.p0), at(b.p1), at(b.p2), at(b.p3)};
+  };
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, scaled(receiver));
+  AddCurve(scene, scaled(Reversed(kArch)), 3);
+  AddCurve(scene, scaled(kBulge), 1.3);
+  return scene;
+}
+
+TEST(BezierTest, ReversedItsFrontIsItsBack) {
+  SceneDescription scene = Everything(kWave, 1), reversed = Everything(Reversed(kWave), 1);
+  AddProbe(scene, 0, 40);
+  AddProbe(reversed, 0, 40, Side::kBack);
+  const std::vector<WorldValue> values = Solve(*Build(scene), 0), others = Solve(*Build(reversed), 0);
+  for (std::size_t i = 0; i < 40; ++i) {
+    const WorldValue &v = values[i], &w = others[39 - i];
+    EXPECT_NEAR(v.irradiance, w.irradiance, v.irradiance_error + w.irradiance_error);
+    EXPECT_NEAR(v.gradient, -w.gradient, v.gradient_error + w.gradient_error);
+    EXPECT_NEAR(v.hessian, w.hessian, v.hessian_error + w.hessian_error);
+  }
+}
+
+TEST(BezierTest, AnySizeIsLitAlike) {
+  SceneDescription one = Everything(kWave, 1);
+  AddProbe(one, 0, 40);
+  const std::vector<WorldValue> values = Solve(*Build(one), 0);
+  for (const double scale : {1e-9, 3e4, 1e9}) {
+    SceneDescription scene = Everything(kWave, scale);
+    AddProbe(scene, 0, 40);
+    const std::vector<WorldValue> others = Solve(*Build(scene), 0);
+    for (std::size_t i = 0; i < 40; ++i) {
+      const WorldValue &v = values[i], &w = others[i];
+      EXPECT_NEAR(v.irradiance, w.irradiance, v.irradiance_error + w.irradiance_error);
+      EXPECT_NEAR(v.gradient, scale * w.gradient, v.gradient_error + scale * w.gradient_error);
+      EXPECT_NEAR(v.hessian, scale * scale * w.hessian, v.hessian_error + scale * scale * w.hessian_error);
+    }
+  }
+}
+
+// By de Casteljau's rule.
+std::pair<BezierDescription, BezierDescription> Split(const BezierDescription& b, double u) {
+  const auto mix = [&](Point2 p, Point2 q) { return p + u * (q - p); };
+  const Point2 a = mix(b.p0, b.p1), m = mix(b.p1, b.p2), c = mix(b.p2, b.p3), am = mix(a, m), mc = mix(m, c);
+  const Point2 middle = mix(am, mc);
+  return {{b.p0, a, am, middle}, {middle, mc, c, b.p3}};
+}
+
+TEST(BezierTest, CutInTwoItIsTheSameCurve) {
+  for (const double u : {0.5, 0.31}) {
+    SceneDescription whole = EmptyScene(), cut = EmptyScene();
+    for (SceneDescription* scene : {&whole, &cut}) {
+      AddCurve(*scene, SegmentDescription{{-1, -0.6}, {1, -0.7}});
+      AddProbe(*scene, 0, 50);
+    }
+    AddCurve(whole, kArch, 2), AddCurve(whole, kBulge, 0.5), AddCurve(whole, kWave);
+    for (const auto& [curve, radiance] : {std::pair{kArch, 2.0}, {kBulge, 0.5}, {kWave, 0.0}}) {
+      const auto [first, second] = Split(curve, u);
+      AddCurve(cut, first, radiance), AddCurve(cut, second, radiance);
+    }
+    const std::vector<WorldValue> values = Solve(*Build(whole), 0), others = Solve(*Build(cut), 0);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const WorldValue &v = values[i], &w = others[i];
+      EXPECT_NEAR(v.irradiance, w.irradiance, v.irradiance_error + w.irradiance_error) << i;
+      EXPECT_NEAR(v.gradient, w.gradient, v.gradient_error + w.gradient_error) << i;
+      EXPECT_NEAR(v.hessian, w.hessian, 2 * (v.hessian_error + w.hessian_error)) << i;
+    }
+  }
+}
+
+TEST(BezierTest, AStraightOneIsTheSegment) {
+  SceneDescription bezier = EmptyScene(), segment = EmptyScene();
+  for (SceneDescription* scene : {&bezier, &segment}) AddCurve(*scene, kFloor);
+  const Point2 a = kLamp.a, b = kLamp.b;
+  AddCurve(bezier, BezierDescription{a, a + 0.2 * (b - a), a + 0.9 * (b - a), b}, 3);
+  AddCurve(segment, kLamp, 3);
+  for (SceneDescription* scene : {&bezier, &segment}) AddProbe(*scene, 0, 16), AddProbe(*scene, 1, 16);
+  for (const std::size_t probe : {0u, 1u}) {
+    const std::vector<WorldValue> values = Solve(*Build(bezier), probe), others = Solve(*Build(segment), probe);
+    for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i].hessian, others[i].hessian);
+  }
+}
+
+// On the tangent at the joint of two arcs, and beside it: the break is the curve's touching point, no end of an arc.
+TEST(BezierTest, JointsAreNoVertices) {
+  const BezierDescription cap{{-0.5, 0.5}, {-0.3, 0.9}, {0.3, 0.9}, {0.5, 0.5}};
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, cap);
+  AddCurve(scene, SegmentDescription{{3, 2}, {-3, 2}}, 1);
+  const auto probe_scene = Build(scene = WithFreePoint(scene, {0, 0}));
+  ASSERT_TRUE(probe_scene);
+  for (const Element& element : probe_scene->elements()) {
+    const BezierPiece* on = probe_scene->bezier_piece(element);
+    if (on == nullptr || on->from == 0) continue;
+    // Away from the joint along its tangent, looking up.
+    const Bezier& bezier = probe_scene->beziers()[on->bezier];
+    const Vector2 tangent = bezier.Tangent(on->from, 1);
+    const Point2 touch = element.a;
+    Receiver receiver;
+    receiver.position = touch + -1.3 * tangent;
+    receiver.normal = {0.6, 0.8}, receiver.tangent = Right(receiver.normal);
+    const Bvh bvh(*probe_scene);
+    ExactSolver solver(*probe_scene, bvh, {});
+    const double at = solver.Evaluate(receiver).hessian[0];
+    receiver.position = receiver.position + 1e-7 * Left(tangent);
+    const double beside = solver.Evaluate(receiver).hessian[0];
+    EXPECT_NEAR(at, beside, 1e-5) << on->from;
+  }
+}
+
+}  // namespace
+}  // namespace flatlight
