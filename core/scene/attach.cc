@@ -102,7 +102,8 @@ void AttachReceivers(const Scene& scene, double near, std::vector<Receiver*> rec
     const BezierPiece* const on = scene.bezier_piece(element);
     const bool follows = on != nullptr && on->bends;
     // An arc bulges from its chord by less than its length.
-    const double reach = far + (follows ? on->distance : 0) + (element.kind == Element::Kind::kArc ? element.length : 0);
+    const double reach =
+        far + (follows ? on->distance : 0) + (element.kind == Element::Kind::kArc ? element.length : 0);
     const double low = std::min(element.a.x, element.b.x) - reach;
     const double high = std::max(element.a.x, element.b.x) + reach;
     auto it = std::lower_bound(receivers.begin(), receivers.end(), low,

@@ -65,7 +65,7 @@ Edge TrueEdge(const Scene& scene, const Receiver& receiver, const Edge& edge) {
   }
   const Point2 touch = bezier.At(u);
   if (!(Length(touch - edge.point) <= element->length)) return found;
-  found = VertexEdge(itself, touch);
+  found = VertexEdge(itself, touch);  // Known as coordinates are, whatever arcs meet there.
   found.kind = Edge::Kind::kSilhouette, found.element = edge.element;
   // At an inflection, and where the curve stands still, the arc's.
   const double radius = std::abs(1 / bezier.Curvature(u));

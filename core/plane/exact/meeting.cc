@@ -74,4 +74,10 @@ bool ShareEnd(const Element& e, const Element& f, Point2 point) {
   return (e.a == point || e.b == point) && (f.a == point || f.b == point);
 }
 
+bool FollowOneBend(const Scene& scene, const Element& e, const Element& f) {
+  const BezierPiece *const first = scene.bezier_piece(e), *const second = scene.bezier_piece(f);
+  if (first == nullptr || second == nullptr || first->bezier != second->bezier) return false;
+  return first->run == second->run || e.b == f.a || f.b == e.a;
+}
+
 }  // namespace flatlight

@@ -23,6 +23,10 @@ struct Tangencies {
 };
 Tangencies FindTangencies(const Scene& scene, const Element& e, const Element& f);
 
+// Whether both follow one Bézier where it bends to one side, or one after the other: they meet at the end that they
+// share, if any, and nowhere else.
+bool FollowOneBend(const Scene& scene, const Element& e, const Element& f);
+
 // Whether they have an end in common, bit by bit, at a point: then the place is that of the end.
 bool ShareEnd(const Element& e, const Element& f, Point2 point);
 

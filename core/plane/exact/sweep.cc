@@ -235,6 +235,7 @@ void Sweep::AddTangencies(std::uint32_t nearest, double low, double high) {
   for (const std::uint32_t p : element.kind == Element::Kind::kSegment ? active_arcs_ : active_) {
     if (p == nearest) continue;
     const Element& other = scene_.element((*parts_)[p].element);
+    if (FollowOneBend(scene_, element, other)) continue;
     const Tangencies tangencies = FindTangencies(scene_, element, other);
     for (int i = 0; i < tangencies.count; ++i) {
       // Where they touch at the receiver's own place they are told apart by their curvature.
@@ -273,7 +274,7 @@ void Sweep::AddMeeting(std::uint32_t p, std::uint32_t other, const Edge& edge) {
   if (edge.kind == Edge::Kind::kHorizon) return;
   const ElementId first = (*parts_)[p].element, second = (*parts_)[other].element;
   const Element &e = scene_.element(first), &f = scene_.element(second);
-  if (e.carrier == f.carrier || ShareEnd(e, f, edge.point)) return;
+  if (e.carrier == f.carrier || ShareEnd(e, f, edge.point) || FollowOneBend(scene_, e, f)) return;
   Meeting meeting{edge, first, second};
   meeting.edge.turn = meeting.edge.stretch = 0;
   AddMeetingError(scene_, *receiver_, e, f, meeting.edge);
@@ -344,7 +345,7 @@ Edge Sweep::BreakBetween(const Edge& from, std::int32_t part) const {
   if (from.kind == Edge::Kind::kHorizon || from.kind == Edge::Kind::kTouch) return from;
   const Element& e = scene_.element((*parts_)[static_cast<std::size_t>(before)].element);
   const Element& f = scene_.element((*parts_)[static_cast<std::size_t>(part)].element);
-  if (e.carrier == f.carrier || ShareEnd(e, f, from.point)) return from;
+  if (e.carrier == f.carrier || ShareEnd(e, f, from.point) || FollowOneBend(scene_, e, f)) return from;
   if (ends_here(before, part) || ends_here(part, before)) {
     Edge edge = from;
     const auto p = static_cast<std::uint32_t>(before), q = static_cast<std::uint32_t>(part);

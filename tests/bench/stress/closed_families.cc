@@ -112,4 +112,26 @@ SceneDescription ClosedArcs(Random& random) {
   return pieces.Take();
 }
 
+// A ring of Béziers that share ends, smooth or not.
+SceneDescription ClosedBeziers(Random& random) {
+  Pieces pieces(random);
+  const Pose pose = AnyPose(random);
+  const int count = random.Int(2, 5);
+  const double start = random.Angle();
+  const auto at = [&](double turns, double radius) {
+    const SinCosValue turn = SinCos(start + 2 * kPi * turns / count);
+    return pose.center + radius * Vector2{turn.cos, turn.sin};
+  };
+  for (int i = 0; i < count; ++i) {
+    const double next = (i + 1) % count == 0 ? 0 : i + 1;
+    pieces.Bezier(
+        {at(i, 1), at(i + 0.33, random.Uniform(0.8, 1.6)), at(i + 0.67, random.Uniform(0.8, 1.6)), at(next, 1)},
+        Pieces::Dark());
+  }
+  AddProbesInside(pieces, pose, 0.3);
+  for (int i = 0; i < count; ++i) pieces.ProbeCurve(static_cast<std::size_t>(i), 5, Side::kFront);
+  AddLampsOutside(pieces, pose);
+  return pieces.Take();
+}
+
 }  // namespace flatlight::stress

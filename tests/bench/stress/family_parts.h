@@ -30,6 +30,8 @@ class Pieces {
   void Polyline(std::vector<Point2> points, bool closed, const Look& look);
   void Arc(Point2 center, double radius, double start, double sweep, const Look& look);
 
+  void Bezier(const BezierDescription& bezier, const Look& look) { maker_.Bezier(NextName(), bezier, look); }
+
   // Probes of a few points on up to that many of the curves, on either side.
   void ProbeCurves(int most);
   void ProbeCurve(std::size_t curve, std::uint32_t count, Side side);
@@ -55,6 +57,7 @@ SceneDescription Grid(Random& random);
 SceneDescription GridArcs(Random& random);
 SceneDescription Polygons(Random& random);
 SceneDescription Arcs(Random& random);
+SceneDescription Beziers(Random& random);
 SceneDescription Nested(Random& random);
 SceneDescription Crowd(Random& random);
 
@@ -77,6 +80,7 @@ SceneDescription WideLine(Random& random);
 SceneDescription ClosedRoom(Random& random);
 SceneDescription ClosedJunctions(Random& random);
 SceneDescription ClosedArcs(Random& random);
+SceneDescription ClosedBeziers(Random& random);
 
 }  // namespace flatlight::stress
 

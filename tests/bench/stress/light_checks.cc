@@ -93,7 +93,8 @@ Failure CheckAgainstRays(const SceneDescription& description, std::uint64_t, Tal
       ++tally.counts["rays: points on curves that cannot be told apart"];
       continue;
     }
-    const BruteIrradiance brute = IrradianceByRays(*built.scene, onward.receiver);
+    const BruteIrradiance brute =
+        IrradianceByRays(*built.scene, onward.receiver, {.position = built.scene->bezier_distance()});
     const double bound = values[i].irradiance_error[0] + brute.uncertain;
     const double difference = values[i].irradiance[0] - brute.value;
     // Farther on light has changed: at most by the square root, above a circle that stands upright there.
@@ -110,7 +111,7 @@ Failure CheckAgainstRays(const SceneDescription& description, std::uint64_t, Tal
 Failure CheckAgainstOracle(const SceneDescription& description, std::uint64_t, Tally& tally) {
   const Built built(description);
   if (!built.scene || HasOverlaps(description) || built.scene->elements().size() > 24) return std::nullopt;
-  if (LargestRadius(*built.scene) > 4) return std::nullopt;
+  if (LargestRadius(*built.scene) > 4 || !built.scene->beziers().empty()) return std::nullopt;
   const SceneDescription pieces = InPieces(description);
   const Oracle oracle(pieces);
   const std::vector<ExactValue> values = SolveExact(built);
@@ -273,10 +274,12 @@ Failure CheckClosed(const SceneDescription& description, std::uint64_t seed, Tal
         continue;
       }
       // A room that is open reads light with good reason (one from which curves were dropped, for instance).
-      if (!oracle) pieces = InPieces(description), oracle.emplace(*pieces);
-      const std::optional<OracleValue> truth = AskOracle(*oracle, *pieces, probe, i);
-      if (truth && truth->irradiance > 1e-9 * LargestRadiance(*built.scene)) continue;
-      if (!truth && probe.curve) continue;
+      if (built.scene->beziers().empty()) {  // The oracle does not know them.
+        if (!oracle) pieces = InPieces(description), oracle.emplace(*pieces);
+        const std::optional<OracleValue> truth = AskOracle(*oracle, *pieces, probe, i);
+        if (truth && truth->irradiance > 1e-9 * LargestRadiance(*built.scene)) continue;
+        if (!truth && probe.curve) continue;
+      }
       return Text("point ", point, ": exact ", v.irradiance[0], ", gradient ", v.gradient[0], ", Hessian ",
                   v.hessian[0], ", sampled ", means[point], " in a closed room");
     }

@@ -131,6 +131,25 @@ SceneDescription Arcs(Random& random) {
   return pieces.Take();
 }
 
+// Waves, loops and near cusps, some with control points that coincide.
+SceneDescription Beziers(Random& random) {
+  Pieces pieces(random);
+  const int count = random.Int(1, 5);
+  for (int i = 0; i < count; ++i) {
+    const Point2 place = random.Point();
+    const double size = random.Chance(0.3) ? 0.1 : 0.8;
+    const auto point = [&] { return place + size * (random.Point() - Point2{}); };
+    BezierDescription bezier{point(), point(), point(), point()};
+    if (random.Chance(0.1)) bezier.p1 = bezier.p0;
+    if (random.Chance(0.1)) bezier.p2 = bezier.p3;
+    pieces.Bezier(bezier, pieces.AnyLook());
+  }
+  for (int i = random.Int(0, 3); i > 0; --i) AddAny(pieces, 1.5);
+  pieces.ProbeCurves(3);
+  pieces.FreePoints(3);
+  return pieces.Take();
+}
+
 SceneDescription Nested(Random& random) {
   Pieces pieces(random);
   const Point2 center = Point2{} + 0.3 * random.Next() * (random.Point() - Point2{});

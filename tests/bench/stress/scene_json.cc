@@ -23,6 +23,11 @@ Json CurveJson(const CurveDescription& curve) {
                    {"radius", arc->radius},
                    {"startAngle", arc->start_angle},
                    {"sweepAngle", arc->sweep_angle}};
+  } else if (const auto* bezier = std::get_if<BezierDescription>(&curve.shape)) {
+    json["bezier"] = {{"p0", PointJson(bezier->p0.x, bezier->p0.y)},
+                      {"p1", PointJson(bezier->p1.x, bezier->p1.y)},
+                      {"p2", PointJson(bezier->p2.x, bezier->p2.y)},
+                      {"p3", PointJson(bezier->p3.x, bezier->p3.y)}};
   }
   json["material"] = curve.material;
   if (curve.emission) {

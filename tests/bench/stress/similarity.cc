@@ -21,6 +21,8 @@ void Reverse(CurveDescription& curve) {
   } else if (auto* polyline = std::get_if<PolylineDescription>(&curve.shape)) {
     // A closed one goes on beginning at its first point.
     std::reverse(polyline->points.begin() + (polyline->closed ? 1 : 0), polyline->points.end());
+  } else if (auto* bezier = std::get_if<BezierDescription>(&curve.shape)) {
+    std::swap(bezier->p0, bezier->p3), std::swap(bezier->p1, bezier->p2);
   } else {
     auto& arc = std::get<ArcDescription>(curve.shape);
     arc.start_angle += arc.sweep_angle;
@@ -41,6 +43,8 @@ void LookAtPoints(const SceneDescription& scene, Look look) {
       look(segment->a), look(segment->b);
     } else if (const auto* polyline = std::get_if<PolylineDescription>(&curve.shape)) {
       for (const Point2 point : polyline->points) look(point);
+    } else if (const auto* bezier = std::get_if<BezierDescription>(&curve.shape)) {
+      look(bezier->p0), look(bezier->p1), look(bezier->p2), look(bezier->p3);
     } else {
       look(std::get<ArcDescription>(curve.shape).center);
     }
@@ -70,6 +74,8 @@ SceneDescription Moved(const SceneDescription& scene, const Similarity& similari
       segment->a = similarity(segment->a), segment->b = similarity(segment->b);
     } else if (auto* polyline = std::get_if<PolylineDescription>(&curve.shape)) {
       for (Point2& point : polyline->points) point = similarity(point);
+    } else if (auto* bezier = std::get_if<BezierDescription>(&curve.shape)) {
+      for (Point2* point : {&bezier->p0, &bezier->p1, &bezier->p2, &bezier->p3}) *point = similarity(*point);
     } else {
       auto& arc = std::get<ArcDescription>(curve.shape);
       arc.center = similarity(arc.center);
