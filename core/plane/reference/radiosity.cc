@@ -7,18 +7,18 @@
 
 #include "core/math/check.h"
 #include "core/math/tolerances.h"
-#include "core/plane/reference/krylov.h"
 #include "core/plane/reference/quadrature.h"
 
 namespace flatlight {
 namespace {
 
 constexpr std::size_t kNodes = kLightCoefficients;
-constexpr double kTolerance = 1e-15;
-// Of the bound, of which two digits are plenty.
-constexpr double kBoundTolerance = 1e-4;
 // The largest value at nodes need not be that of the panel, nor the residual's polynomial the residual.
 constexpr double kCaution = 1.5;
+// Above this the largest bounds of all panels would add up to far more than there is.
+constexpr double kReflectsMuch = 0.9;
+// Of bounds there.
+constexpr double kBoundTolerance = 1e-4;
 // At a kink coefficients fall by the square of their number; beside the last ones, so much of the mean may be missed.
 constexpr double kMissed = 0.2;
 // Of a row's sum, in units of roundoff.
@@ -36,7 +36,7 @@ std::vector<double> NodesAndBetween() {
 }  // namespace
 
 Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, PanelMesh mesh, std::size_t channels,
-                     std::optional<std::uint32_t> max_bounces, Rows before)
+                     std::optional<std::uint32_t> max_bounces, double tolerance, Radiosity* before)
     : scene_(caster.scene()),
       charts_(charts),
       mesh_(std::move(mesh)),
@@ -44,8 +44,8 @@ Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, 
       max_bounces_(max_bounces),
       to_coefficients_(CoefficientsFromValues(Gauss(kNodes).node)),
       to_residual_(CoefficientsFromValues(NodesAndBetween())),
+      tolerance_(tolerance),
       rows_{std::vector<Row>(mesh_.size() * kNodes), std::vector<Row>(mesh_.size() * (kNodes + 1))},
-      rows_before_(std::move(before)),
       brightest_(channels, 0.0),
       light_(mesh_.size(), channels, kNodes),
       first_(mesh_.size(), channels, kNodes),
@@ -54,6 +54,8 @@ Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, 
       rounding_(mesh_.size() * channels),
       spread_(mesh_.size() * kNodes * channels) {
   FLATLIGHT_DCHECK(scene_.traits().lambertian && max_bounces != 0u);
+  for (std::size_t c = 0; before && !max_bounces && c < channels; ++c) start_.push_back(before->OnNodesOf(mesh_, c));
+  if (before) rows_before_ = std::move(before->rows_);
   errors_.residual = first_residual_;
   errors_.size.assign(mesh_.size() * channels, 0.0);
   errors_.steep.assign(mesh_.size() * channels, 0.0);
@@ -82,7 +84,7 @@ void Radiosity::BuildRows(RowBuilder& builder, std::size_t i) {
   for (std::size_t n = 0; n < points.size(); ++n) {
     const bool node = n % 2 == 1;
     const std::size_t count = node ? kNodes : kNodes + 1;
-    const Row* before =
+    Row* before =
         known ? &(node ? rows_before_.nodes : rows_before_.between)[panel.before * count + n / 2] : nullptr;
     Row& row = (node ? rows_.nodes : rows_.between)[i * count + n / 2];
     builder.Build(mesh_, chart.ReceiverAt(panel.element, panel.At(points[n]), panel.side), node, before, row);
@@ -113,84 +115,106 @@ void Radiosity::Transport(const Loop& loop, std::size_t channel, const Values& c
   });
 }
 
-Radiosity::Values Radiosity::Accumulate(const Loop& loop, const Stop& stop, std::size_t channel, const Values& source,
-                                        std::optional<std::uint32_t> bounces, Values* before) const {
-  Values values(source.size(), 0.0), coefficients;
-  if (!bounces) {
-    const LinearMap map = [&](const Values& in, Values& out) {
-      ToCoefficients(in, coefficients);
-      Transport(loop, channel, coefficients, out);
-      for (std::size_t r = 0; r < in.size(); ++r) out[r] = in[r] - out[r];
+Radiosity::Values Radiosity::OnNodesOf(const PanelMesh& mesh, std::size_t channel) const {
+  const GaussRule& rule = Gauss(kNodes);
+  Values values;
+  values.reserve(mesh.size() * kNodes);
+  double p[kNodes];
+  std::size_t mine = 0;  // Panels come in one order in both meshes.
+  for (const Panel& panel : mesh.panels()) {
+    const auto holds = [&](const Panel& other) {
+      return other.element == panel.element && other.side == panel.side && other.high >= panel.high;
     };
-    SolveByResiduals(map, source, before ? kTolerance : kBoundTolerance, stop, values);
-    if (before) *before = values;
-    return values;
-  }
-  Values next;
-  if (*bounces > 0) values = source;
-  if (before) before->assign(source.size(), 0.0);
-  for (std::uint32_t bounce = 1; bounce < *bounces && !stop(); ++bounce) {
-    ToCoefficients(values, coefficients);
-    Transport(loop, channel, coefficients, next);
-    double change = 0, most = 0;
-    for (std::size_t r = 0; r < next.size(); ++r) {
-      next[r] += source[r];
-      change = std::max(change, std::abs(next[r] - values[r]));
-      most = std::max(most, std::abs(next[r]));
+    while (!holds(mesh_.panels()[mine])) ++mine;
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      Legendre(mesh_.panels()[mine].Local(panel.At(rule.node[n])), kNodes, p);
+      values.push_back(light_.At(mine, channel, p));
     }
-    if (before) *before = values;
-    values.swap(next);
-    // What further bounces add is of the size of their rounding, which the bound has.
-    if (change <= kRounding * most) break;
   }
   return values;
 }
 
-void Radiosity::Solve(const Loop& loop, const Stop& stop) {
+bool Radiosity::Accumulate(const Loop& loop, const std::function<Values()>& source, const Values& start,
+                           double tolerance) {
+  if (!accumulation_) {
+    Values first = source();
+    Values guess = start.empty() ? Values(first.size(), 0.0) : start;
+    accumulation_.emplace(std::move(first), max_bounces_, std::move(guess), tolerance, kRounding);
+  }
+  Values coefficients;
+  return accumulation_->Step([&](const Values& in, Values& out) {
+    ToCoefficients(in, coefficients);
+    Transport(loop, channel_, coefficients, out);
+  });
+}
+
+bool Radiosity::Solve(const Loop& loop) {
   rows_before_ = {};
-  Values source(rows_.nodes.size()), before, coefficients;
-  const auto keep = [&](const Values& values, std::size_t c, PanelLight& light) {
+  if (channel_ == channels_) return true;
+  const std::size_t c = channel_;
+  const auto source = [&] {
+    Values values(rows_.nodes.size());
+    for (std::size_t r = 0; r < values.size(); ++r)
+      values[r] = HalfReflectance(r / kNodes, c) * rows_.nodes[r].direct.value[c];
+    return values;
+  };
+  if (!Accumulate(loop, source, start_.empty() ? Values() : start_[c], tolerance_)) return false;
+  Values coefficients;
+  const auto keep = [&](const Values& values, PanelLight& light) {
     ToCoefficients(values, coefficients);
     for (std::size_t i = 0; i < mesh_.size(); ++i) std::copy_n(&coefficients[i * kNodes], kNodes, light.Of(i, c));
   };
-  for (std::size_t c = 0; c < channels_; ++c) {
-    for (std::size_t r = 0; r < source.size(); ++r)
-      source[r] = HalfReflectance(r / kNodes, c) * rows_.nodes[r].direct.value[c];
-    const Values values = Accumulate(loop, stop, c, source, max_bounces_, &before);
-    brightest_[c] = scene_.environment().value[c];
-    for (const double value : values) brightest_[c] = std::max(brightest_[c], value);
-    for (const Curve& curve : scene_.curves()) brightest_[c] = std::max(brightest_[c], curve.radiance.value[c]);
-    keep(values, c, light_);
-    keep(before, c, before_);
-    keep(source, c, first_);
+  brightest_[c] = scene_.environment().value[c];
+  for (const double value : accumulation_->values()) brightest_[c] = std::max(brightest_[c], value);
+  for (const Curve& curve : scene_.curves()) brightest_[c] = std::max(brightest_[c], curve.radiance.value[c]);
+  keep(accumulation_->values(), light_);
+  keep(accumulation_->before(), before_);
+  keep(source(), first_);
+  accumulation_.reset();
+  if (++channel_ < channels_) return false;
+  channel_ = 0;
+  start_.clear();
+  return true;
+}
+
+// What is left over at the place where the row was made and the polynomials are p, and rounding there.
+void Radiosity::CheckAt(std::size_t i, const Row& row, const double* p, std::size_t c, double& residual,
+                        double& rounding) const {
+  const double half = HalfReflectance(i, c), direct = row.direct.value[c];
+  double sum = 0, size = direct;
+  for (std::size_t e = 0; e < row.panels.size(); ++e) {
+    const double* light = before_.Of(row.panels[e], c);
+    sum += row.TimesLight(e, light);
+    size += row.low[e * kNodes] * std::abs(light[0]);
   }
+  residual = half * (direct + sum) - light_.At(i, c, p);
+  rounding = half * (kRounding * size + row.coordinates * brightest_[c]);
 }
 
 void Radiosity::Check(std::size_t i) {
   static const auto& points = *new std::vector<double>(NodesAndBetween());
   double p[kNodes], residual[kMaxChannels][kResidualCoefficients] = {}, first[kMaxChannels][kResidualCoefficients] = {};
-  // At nodes, which have odd numbers, nothing is left over but rounding.
-  for (std::size_t n = 0; n < points.size(); n += 2) {
-    const Row& row = rows_.between[i * (kNodes + 1) + n / 2];
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const bool node = n % 2 == 1;
+    const Row& row = node ? rows_.nodes[i * kNodes + n / 2] : rows_.between[i * (kNodes + 1) + n / 2];
     Legendre(points[n], kNodes, p);
     for (std::size_t c = 0; c < channels_; ++c) {
-      const double half = HalfReflectance(i, c), direct = row.direct.value[c];
-      double sum = 0, size = direct;
-      for (std::size_t e = 0; e < row.panels.size(); ++e) {
-        const double* light = before_.Of(row.panels[e], c);
-        sum += row.TimesLight(e, light);
-        size += row.low[e * kNodes] * std::abs(light[0]);
-      }
-      residual[c][n] = half * (direct + sum) - light_.At(i, c, p);
-      first[c][n] = half * direct - first_.At(i, c, p);
+      double rounding_here = 0;
+      CheckAt(i, row, p, c, residual[c][n], rounding_here);
       double& rounding = rounding_[i * channels_ + c];
-      rounding = std::max(rounding, half * (kRounding * size + row.coordinates * brightest_[c]));
+      rounding = std::max(rounding, rounding_here);
+      if (!node) {
+        first[c][n] = HalfReflectance(i, c) * row.direct.value[c] - first_.At(i, c, p);
+      } else if (std::abs(residual[c][n]) <= rounding_here) {
+        // At nodes nothing is left over but rounding and what the solver leaves.
+        residual[c][n] = 0;
+      }
     }
   }
   for (std::size_t c = 0; c < channels_; ++c) {
     for (std::size_t k = 0; k < kResidualCoefficients; ++k) {
       double sum = 0, sum_first = 0;
-      for (std::size_t n = 0; n < kResidualCoefficients; n += 2) {
+      for (std::size_t n = 0; n < kResidualCoefficients; ++n) {
         sum += to_residual_[k * kResidualCoefficients + n] * residual[c][n];
         sum_first += to_residual_[k * kResidualCoefficients + n] * first[c][n];
       }
@@ -228,19 +252,36 @@ void Radiosity::Spread(std::size_t i) {
   }
 }
 
-void Radiosity::Bound(const Loop& loop, const Stop& stop) {
-  Values source(rows_.nodes.size());
-  for (std::size_t c = 0; c < channels_; ++c) {
+bool Radiosity::Bound(const Loop& loop) {
+  if (channel_ == channels_) return true;
+  const std::size_t c = channel_;
+  const auto source = [&] {
+    Values values(rows_.nodes.size());
     const double left_out = max_bounces_ ? kRounding * brightest_[c] : 0;
-    for (std::size_t r = 0; r < rows_.nodes.size(); ++r)
-      source[r] = spread_[r * channels_ + c] + rounding_[r / kNodes * channels_ + c] + left_out;
-    const Values bound = Accumulate(loop, stop, c, source, max_bounces_, nullptr);
+    for (std::size_t r = 0; r < values.size(); ++r)
+      values[r] = spread_[r * channels_ + c] + rounding_[r / kNodes * channels_ + c] + left_out;
+    return values;
+  };
+  if (scene_.traits().max_reflectance > kReflectsMuch) {
+    if (!Accumulate(loop, source, {}, kBoundTolerance)) return false;
     for (std::size_t i = 0; i < mesh_.size(); ++i) {
       double most = 0;
-      for (std::size_t k = 0; k < kNodes; ++k) most = std::max(most, std::abs(bound[i * kNodes + k]));
+      for (std::size_t k = 0; k < kNodes; ++k)
+        most = std::max(most, std::abs(accumulation_->values()[i * kNodes + k]));
       errors_.value[i * channels_ + c] = most;
     }
+    accumulation_.reset();
+  } else {
+    if (!growth_) {
+      Values half(mesh_.size());
+      for (std::size_t i = 0; i < mesh_.size(); ++i) half[i] = HalfReflectance(i, c);
+      growth_.emplace(rows_.nodes, source(), std::move(half), max_bounces_);
+    }
+    if (!growth_->Step(loop)) return false;
+    for (std::size_t i = 0; i < mesh_.size(); ++i) errors_.value[i * channels_ + c] = growth_->bounds()[i];
+    growth_.reset();
   }
+  return ++channel_ == channels_;
 }
 
 std::vector<double> Radiosity::Influence() const {

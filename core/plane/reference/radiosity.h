@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "core/plane/ray_caster.h"
+#include "core/plane/reference/accumulation.h"
+#include "core/plane/reference/error_growth.h"
 #include "core/plane/reference/panel_light.h"
 #include "core/plane/reference/panel_mesh.h"
 #include "core/plane/reference/reception.h"
@@ -25,35 +26,34 @@ namespace flatlight {
 // mean on a panel; so the bound stays sharp where curves reflect nearly all.
 //
 // Steps, in this order: BuildRows of all panels, Solve, Check of all panels, Spread of all panels, Bound. Steps of
-// panels may run at once on several threads. Equal bits for any number of threads.
+// panels may run at once on several threads; Solve and Bound are called until they return true, which may stop and go
+// on between calls. Equal bits for any number of threads.
 class Radiosity {
  public:
   // Runs work(0) ... work(count - 1).
   using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
-  using Stop = std::function<bool()>;
 
   // Requires reflection by Lambertian curves alone, and max_bounces != 0 (absent: all). Only the first `channels` are
   // computed. The caster and the charts must outlive this.
-  // Rows of the mesh that this one was made of save most of the work for new ones.
+  // `tolerance`: to which the equations at the nodes are solved, of their right sides; what is left over is part of the
+  // bound. Rows of the mesh that this one was made of save most of the work for new ones, and its light is the guess from
+  // which to solve.
   struct Rows {
     std::vector<Row> nodes;    // By panel, then node.
     std::vector<Row> between;  // By panel, then point between nodes.
   };
   Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, PanelMesh mesh, std::size_t channels,
-            std::optional<std::uint32_t> max_bounces, Rows before = {});
+            std::optional<std::uint32_t> max_bounces, double tolerance, Radiosity* before = nullptr);
 
   const PanelMesh& mesh() const { return mesh_; }
   // In bytes, of the rows built so far.
   std::size_t memory() const;
 
-  // Leaves none.
-  Rows TakeRows() { return std::move(rows_); }
-
   void BuildRows(RowBuilder& builder, std::size_t panel);
-  void Solve(const Loop& loop, const Stop& stop);
+  bool Solve(const Loop& loop);
   void Check(std::size_t panel);
   void Spread(std::size_t panel);
-  void Bound(const Loop& loop, const Stop& stop);
+  bool Bound(const Loop& loop);
 
   const PanelLight& light() const { return light_; }
   const LightErrors& errors() const { return errors_; }
@@ -68,9 +68,12 @@ class Radiosity {
   void ToCoefficients(const Values& values, Values& coefficients) const;
   // T of a light.
   void Transport(const Loop& loop, std::size_t channel, const Values& coefficients, Values& out) const;
-  // What has come of a source after so many bounces; `before` is what came after one less.
-  Values Accumulate(const Loop& loop, const Stop& stop, std::size_t channel, const Values& source,
-                    std::optional<std::uint32_t> bounces, Values* before) const;
+  // One step of what comes of a source in the channel that is being worked on.
+  bool Accumulate(const Loop& loop, const std::function<Values()>& source, const Values& start, double tolerance);
+  // The light of a channel at the nodes of another mesh.
+  Values OnNodesOf(const PanelMesh& mesh, std::size_t channel) const;
+  void CheckAt(std::size_t panel, const Row& row, const double* p, std::size_t channel, double& residual,
+               double& rounding) const;
 
   const Scene& scene_;
   const std::vector<Chart>& charts_;
@@ -78,7 +81,12 @@ class Radiosity {
   std::size_t channels_;
   std::optional<std::uint32_t> max_bounces_;
   Values to_coefficients_, to_residual_;  // Matrices.
+  double tolerance_;
   Rows rows_, rows_before_;
+  std::vector<Values> start_;  // By channel: a guess at the light at the nodes.
+  std::size_t channel_ = 0;    // That is being solved or bounded.
+  std::optional<Accumulation> accumulation_;
+  std::optional<ErrorGrowth> growth_;
   Values brightest_;                   // By channel: what no radiance is above.
   PanelLight light_, first_, before_;  // Of all bounces, of one, of one less than all.
   PanelLight first_residual_;

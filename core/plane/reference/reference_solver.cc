@@ -24,6 +24,10 @@ constexpr int kMostIdleRounds = 3;
 // Of what errors are relative to, and of the probe's mean.
 constexpr double kFloor = 0.01;
 constexpr std::size_t kPiecesPerThread = 4;
+// To which equations are solved: of the target error; after a round that brought little; and at least.
+constexpr double kTolerance = 1e-3;
+constexpr double kTighter = 1e-3;
+constexpr double kLeastTolerance = 1e-15;
 
 double Relative(double error, double size) {
   return error == 0 ? 0 : size > 0 ? error / size : std::numeric_limits<double>::infinity();
@@ -54,6 +58,7 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
       channels_(static_cast<std::size_t>(options.channels)),
       charts_(ChartsOf(caster_->scene())),
       meetings_(Meetings(caster_->scene(), charts_)),
+      tolerance_(std::clamp(kTolerance * options.target_error, kLeastTolerance, kTolerance)),
       lights_(*caster_, {.derivatives = options.derivatives}) {
   for (std::size_t p = 0; p < scene_->probes().size(); ++p) {
     for (const Receiver& receiver : scene_->probes()[p].receivers) {
@@ -96,9 +101,8 @@ void ReferenceSolver::Return(std::unique_ptr<Worker> worker) {
 }
 
 void ReferenceSolver::StartMesh(PanelMesh mesh) {
-  Radiosity::Rows rows;
-  if (radiosity_) rows = radiosity_->TakeRows();
-  radiosity_.emplace(*caster_, charts_, std::move(mesh), channels_, options_.max_bounces, std::move(rows));
+  radiosity_ = std::make_unique<Radiosity>(*caster_, charts_, std::move(mesh), channels_, options_.max_bounces,
+                                           tolerance_, radiosity_.get());
   coming_.assign(points_.size(), {});
   shares_.assign(panels(), 0.0);
   split_.assign(panels(), 0);
@@ -117,9 +121,7 @@ void ReferenceSolver::Advance(Executor& executor, int threads, const Cancellatio
   const Clock::Time start = clock.Now();
   while (state_ == State::kWorks && !cancellation.cancelled()) {
     if (IsWhole()) {
-      DoWhole(executor, threads, cancellation);
-      if (cancellation.cancelled()) return;  // It is done again.
-      next_ = 1;
+      if (StepWhole(executor, threads)) next_ = 1;
     } else {
       const std::size_t left = Count() - next_;
       const std::size_t pieces = std::min(left, kPiecesPerThread * static_cast<std::size_t>(threads));
@@ -136,7 +138,7 @@ void ReferenceSolver::Advance(Executor& executor, int threads, const Cancellatio
   }
 }
 
-void ReferenceSolver::DoWhole(Executor& executor, int threads, const Cancellation& cancellation) {
+bool ReferenceSolver::StepWhole(Executor& executor, int threads) {
   const Radiosity::Loop loop = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
     // Of some panels at once, for a panel is little work.
     constexpr std::size_t kTogether = 8;
@@ -144,12 +146,7 @@ void ReferenceSolver::DoWhole(Executor& executor, int threads, const Cancellatio
       for (std::size_t j = i * kTogether; j < std::min((i + 1) * kTogether, count); ++j) work(j);
     });
   };
-  const Radiosity::Stop stop = [&] { return cancellation.cancelled(); };
-  if (step_ == Step::kSolve) {
-    radiosity_->Solve(loop, stop);
-  } else {
-    radiosity_->Bound(loop, stop);
-  }
+  return step_ == Step::kSolve ? radiosity_->Solve(loop) : radiosity_->Bound(loop);
 }
 
 void ReferenceSolver::Work(Worker& worker, std::size_t i) {
@@ -253,6 +250,8 @@ void ReferenceSolver::EndPoints() {
     return;
   }
   idle_rounds_ = rounds_ > 1 && relative_error_ > kIdle * before ? idle_rounds_ + 1 : 0;
+  // It may be the solver's own.
+  if (idle_rounds_ > 0) tolerance_ = std::max(kTighter * tolerance_, kLeastTolerance);
   if (rounds_ == kMostRounds || idle_rounds_ == kMostIdleRounds) {
     state_ = State::kExhausted;
     return;

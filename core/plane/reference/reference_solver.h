@@ -63,7 +63,8 @@ class ReferenceSolver {
   // Of the step: pieces of work, and one of them.
   std::size_t Count() const;
   void Work(Worker& worker, std::size_t i);
-  void DoWhole(Executor& executor, int threads, const Cancellation& cancellation);
+  // One step of what all panels take part in. Returns whether it is done.
+  bool StepWhole(Executor& executor, int threads);
   void FindSlopes(Worker& worker, std::size_t panel);
   void Gather(Worker& worker, std::size_t point);
   void NextStep();
@@ -77,12 +78,13 @@ class ReferenceSolver {
   std::size_t channels_;
   std::vector<Chart> charts_;
   std::vector<std::vector<double>> meetings_;
+  double tolerance_;  // To which equations are solved.
   LightSolver lights_;
   std::vector<const Receiver*> points_;
   std::vector<std::size_t> probe_of_point_;
   std::vector<ExactValue> direct_;  // By point.
 
-  std::optional<Radiosity> radiosity_;
+  std::unique_ptr<Radiosity> radiosity_;
   Step step_ = Step::kRows;
   std::size_t next_ = 0;            // In the step.
   std::vector<ExactValue> coming_;  // By point, of this round.

@@ -45,23 +45,31 @@ std::vector<double> SplitPlaces(const Panel& panel, const Chart& chart, const st
   if (panel.high - panel.low < 4 * kShortest) return {};
   const auto sign_at = [&](double u) { return outlook.Signature(chart.ReceiverAt(panel.element, u, panel.side)); };
   constexpr std::size_t kLooks = 2 * kLightCoefficients;
-  std::vector<double> places;
+  struct Change {
+    double low, high;
+    std::uint64_t sign;  // At the low end.
+  };
+  std::vector<Change> changes;
   double before = panel.At(-1 + 1e-7);
   std::uint64_t sign = sign_at(before);
-  for (std::size_t i = 1; i <= kLooks && places.size() <= kMostEvents; ++i) {
+  for (std::size_t i = 1; i <= kLooks && changes.size() <= kMostEvents; ++i) {
     const double x = 2 * static_cast<double>(i) / kLooks - 1;
     const double u = panel.At(std::min(x, 1 - 1e-7));
     const std::uint64_t next = sign_at(u);
-    if (next != sign) {
-      double low = before, high = u;
-      for (double middle = 0.5 * (low + high); low < middle && middle < high && high - low > 1e-15;
-           middle = 0.5 * (low + high))
-        (sign_at(middle) == sign ? low : high) = middle;
-      places.push_back(0.5 * (low + high));
-    }
+    if (next != sign) changes.push_back({before, u, sign});
     before = u, sign = next;
   }
-  if (!places.empty() && places.size() <= kMostEvents) {
+  // Where there are many, none is looked for.
+  std::vector<double> places;
+  if (changes.size() > kMostEvents) changes.clear();
+  for (const Change& change : changes) {
+    double low = change.low, high = change.high;
+    for (double middle = 0.5 * (low + high); low < middle && middle < high && high - low > 1e-15;
+         middle = 0.5 * (low + high))
+      (sign_at(middle) == change.sign ? low : high) = middle;
+    places.push_back(0.5 * (low + high));
+  }
+  if (!places.empty()) {
     // Events at an end leave the rest as it was.
     double from = panel.low, widest = 0, middle = 0;
     for (std::size_t i = 0; i <= places.size(); ++i) {

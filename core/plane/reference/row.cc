@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "core/math/check.h"
 #include "core/plane/exact/edge.h"
@@ -37,25 +38,41 @@ double SineBetween(const Chart& chart, const Receiver& receiver, double low, dou
   return std::abs(sine[1] - sine[0]);
 }
 
-void RowBuilder::Build(const PanelMesh& mesh, const Receiver& receiver, bool high, const Row* before, Row& row) {
+void RowBuilder::Build(const PanelMesh& mesh, const Receiver& receiver, bool high, Row* before, Row& row) {
   row.panels.clear();
   row.low.clear();
   row.high.clear();
-  row.coordinates = 0;
+  row.stretches.clear();
   before_ = before;
   next_before_ = 0;
-  EndErrors errors(scene_);
-  for (const VisiblePiece& piece : outlook_.From(receiver)) {
-    AddPiece(mesh, receiver, piece, high, row);
-    for (const PieceEnd& end : {piece.begin, piece.end})
-      row.coordinates += errors.Add(receiver, piece.element, end, 1).s;
+  if (before) {
+    row.stretches = std::move(before->stretches);
+    row.coordinates = before->coordinates;
+    row.direct = before->direct;
+  } else {
+    row.coordinates = 0;
+    EndErrors errors(scene_);
+    for (const VisiblePiece& piece : outlook_.From(receiver)) {
+      const PanelMesh::Range range = mesh.On(piece.element, piece.side);
+      const double low = std::min(piece.begin.u, piece.end.u), up = std::max(piece.begin.u, piece.end.u);
+      if (range.first < range.last && low < up) row.stretches.push_back({piece.element, piece.side, low, up});
+      for (const PieceEnd& end : {piece.begin, piece.end})
+        row.coordinates += errors.Add(receiver, piece.element, end, 1).s;
+    }
+    row.coordinates += errors.joints();
+    // The receivers of the equation look along elements, not along the Béziers that they stand for.
+    if (receiver.element != ElementId::kNone) {
+      if (const BezierPiece* on = scene_.bezier_piece(scene_.element(receiver.element)))
+        row.coordinates += 4 * on->tilt;
+    }
+    row.direct = outlook_.Direct(receiver);
   }
-  row.coordinates += errors.joints();
-  // The receivers of the equation look along elements, not along the Béziers that they stand for.
-  if (receiver.element != ElementId::kNone) {
-    if (const BezierPiece* on = scene_.bezier_piece(scene_.element(receiver.element))) row.coordinates += 4 * on->tilt;
-  }
-  row.direct = before ? before->direct : outlook_.Direct(receiver);
+  const std::size_t expected = before ? before->panels.size() + before->panels.size() / 4 : 2 * row.stretches.size();
+  row.panels.reserve(expected);
+  row.low.reserve(expected * kLightCoefficients);
+  if (high) row.high.reserve(expected * (kResidualCoefficients - kLightCoefficients));
+  for (const Row::Stretch& stretch : row.stretches) AddStretch(mesh, receiver, stretch, high, row);
+  if (before) *before = {};
 }
 
 bool RowBuilder::Copy(const Panel& panel, bool high, Row& row) {
@@ -73,19 +90,22 @@ bool RowBuilder::Copy(const Panel& panel, bool high, Row& row) {
   return true;
 }
 
-void RowBuilder::AddPiece(const PanelMesh& mesh, const Receiver& receiver, const VisiblePiece& piece, bool high,
-                          Row& row) {
-  const PanelMesh::Range range = mesh.On(piece.element, piece.side);
-  if (range.first == range.last) return;
-  const Chart& chart = charts_[static_cast<std::size_t>(piece.element)];
-  const double radius = OwnRadius(scene_, receiver, piece.element);
-  const double begin_u = std::min(piece.begin.u, piece.end.u), end_u = std::max(piece.begin.u, piece.end.u);
+void RowBuilder::AddStretch(const PanelMesh& mesh, const Receiver& receiver, const Row::Stretch& stretch, bool high,
+                            Row& row) {
+  const PanelMesh::Range range = mesh.On(stretch.element, stretch.side);
+  const Chart& chart = charts_[static_cast<std::size_t>(stretch.element)];
+  const double radius = OwnRadius(scene_, receiver, stretch.element);
+  // The first panel that reaches beyond its low end.
+  const auto first = std::partition_point(
+      mesh.panels().begin() + static_cast<std::ptrdiff_t>(range.first),
+      mesh.panels().begin() + static_cast<std::ptrdiff_t>(range.last),
+      [&](const Panel& panel) { return panel.high <= stretch.low; });
   const std::size_t count = high ? kResidualCoefficients : kLightCoefficients;
   double p[kResidualCoefficients];
-  for (std::size_t i = range.first; i < range.last; ++i) {
+  for (auto i = static_cast<std::size_t>(first - mesh.panels().begin()); i < range.last; ++i) {
     const Panel& panel = mesh.panels()[i];
-    const double from = std::max(begin_u, panel.low), to = std::min(end_u, panel.high);
-    if (!(from < to)) continue;
+    const double from = std::max(stretch.low, panel.low), to = std::min(stretch.high, panel.high);
+    if (!(from < to)) break;
     row.panels.push_back(static_cast<std::uint32_t>(i));
     if (Copy(panel, high, row)) continue;
     double moments[kResidualCoefficients] = {};
@@ -94,7 +114,7 @@ void RowBuilder::AddPiece(const PanelMesh& mesh, const Receiver& receiver, const
       for (std::size_t k = 0; k < count; ++k) moments[k] += weight * p[k];
     };
     const auto add = [&](double u, const Chart::Place& place, double weight) {
-      add_weight(u, weight * Kernel(receiver, place, piece.side, radius).Value());
+      add_weight(u, weight * Kernel(receiver, place, stretch.side, radius).Value());
     };
     // What is left of a panel that runs into the receiver.
     const auto rest = [&](double u, double begin, double end) {

@@ -17,8 +17,17 @@
 namespace flatlight {
 
 struct Row {
+  // What of an element's side is seen, in its chart.
+  struct Stretch {
+    ElementId element = ElementId::kNone;
+    Side side = Side::kFront;
+    double low = 0;
+    double high = 1;
+  };
+
   Spectrum direct;         // Irradiance straight from emitters, lights and the environment.
   double coordinates = 0;  // What it is off by, as coordinates are, for light of radiance 1.
+  std::vector<Stretch> stretches;  // Of what has panels, in the order of theta; each is seen once.
   std::vector<std::uint32_t> panels;
   // Irradiance from each Legendre polynomial on each of them: kLightCoefficients, and the rest up to
   // kResidualCoefficients, of which few digits count.
@@ -49,12 +58,12 @@ class RowBuilder {
         count_(kLightCoefficients - 1, kKernelDigits),
         outlook_(caster, charts) {}
 
-  // `before`, if not null: the row of the same receiver with the mesh that this one was made of. What is in it already
-  // is not computed again. Without `high` the row has no high coefficients.
-  void Build(const PanelMesh& mesh, const Receiver& receiver, bool high, const Row* before, Row& row);
+  // `before`, if not null: the row of the same receiver with the mesh that this one was made of. What is in it already,
+  // and what is seen from there, is not computed again; it is left empty. Without `high` the row has no high coefficients.
+  void Build(const PanelMesh& mesh, const Receiver& receiver, bool high, Row* before, Row& row);
 
  private:
-  void AddPiece(const PanelMesh& mesh, const Receiver& receiver, const VisiblePiece& piece, bool high, Row& row);
+  void AddStretch(const PanelMesh& mesh, const Receiver& receiver, const Row::Stretch& stretch, bool high, Row& row);
   // Copies the panel's entry, if there was one.
   bool Copy(const Panel& panel, bool high, Row& row);
 
