@@ -92,8 +92,7 @@ bool ErrorGrowth::Step(const Loop& loop) {
   }
   if (Raise()) return true;
   std::vector<double> source(bounds_.size()), start(bounds_.size());
-  for (std::size_t i = 0; i < bounds_.size(); ++i)
-    source[i] = equations_[i].source, start[i] = equations_[i].wanted;
+  for (std::size_t i = 0; i < bounds_.size(); ++i) source[i] = equations_[i].source, start[i] = equations_[i].wanted;
   if (looks_ % 2 == 0) {
     // Where bounds are small beside others they come out better that way.
     bounds_ = std::move(start);

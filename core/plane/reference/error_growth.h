@@ -15,9 +15,9 @@
 namespace flatlight {
 
 // Bounds, one for each panel, on what sources of error at its nodes come to after all bounces: the least w with
-// w >= s + rho/2 (irradiance at the node from panels of radiance w) at each node. A guess comes from the equation at the
-// node of each panel where most is wanted; what it lacks at any other is a known part of s there, and by that part all
-// of w is raised. So it is a bound however well the equations were solved.
+// w >= s + rho/2 (irradiance at the node from panels of radiance w) at each node. A guess comes from the equation at
+// the node of each panel where most is wanted; what it lacks at any other is a known part of s there, and by that part
+// all of w is raised. So it is a bound however well the equations were solved.
 class ErrorGrowth {
  public:
   // Runs work(0) ... work(count - 1).

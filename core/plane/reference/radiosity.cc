@@ -84,8 +84,7 @@ void Radiosity::BuildRows(RowBuilder& builder, std::size_t i) {
   for (std::size_t n = 0; n < points.size(); ++n) {
     const bool node = n % 2 == 1;
     const std::size_t count = node ? kNodes : kNodes + 1;
-    Row* before =
-        known ? &(node ? rows_before_.nodes : rows_before_.between)[panel.before * count + n / 2] : nullptr;
+    Row* before = known ? &(node ? rows_before_.nodes : rows_before_.between)[panel.before * count + n / 2] : nullptr;
     Row& row = (node ? rows_.nodes : rows_.between)[i * count + n / 2];
     builder.Build(mesh_, chart.ReceiverAt(panel.element, panel.At(points[n]), panel.side), node, before, row);
   }
@@ -266,8 +265,7 @@ bool Radiosity::Bound(const Loop& loop) {
     if (!Accumulate(loop, source, {}, kBoundTolerance)) return false;
     for (std::size_t i = 0; i < mesh_.size(); ++i) {
       double most = 0;
-      for (std::size_t k = 0; k < kNodes; ++k)
-        most = std::max(most, std::abs(accumulation_->values()[i * kNodes + k]));
+      for (std::size_t k = 0; k < kNodes; ++k) most = std::max(most, std::abs(accumulation_->values()[i * kNodes + k]));
       errors_.value[i * channels_ + c] = most;
     }
     accumulation_.reset();

@@ -36,8 +36,8 @@ class Radiosity {
   // Requires reflection by Lambertian curves alone, and max_bounces != 0 (absent: all). Only the first `channels` are
   // computed. The caster and the charts must outlive this.
   // `tolerance`: to which the equations at the nodes are solved, of their right sides; what is left over is part of the
-  // bound. Rows of the mesh that this one was made of save most of the work for new ones, and its light is the guess from
-  // which to solve.
+  // bound. Rows of the mesh that this one was made of save most of the work for new ones, and its light is the guess
+  // from which to solve.
   struct Rows {
     std::vector<Row> nodes;    // By panel, then node.
     std::vector<Row> between;  // By panel, then point between nodes.

@@ -96,10 +96,9 @@ void RowBuilder::AddStretch(const PanelMesh& mesh, const Receiver& receiver, con
   const Chart& chart = charts_[static_cast<std::size_t>(stretch.element)];
   const double radius = OwnRadius(scene_, receiver, stretch.element);
   // The first panel that reaches beyond its low end.
-  const auto first = std::partition_point(
-      mesh.panels().begin() + static_cast<std::ptrdiff_t>(range.first),
-      mesh.panels().begin() + static_cast<std::ptrdiff_t>(range.last),
-      [&](const Panel& panel) { return panel.high <= stretch.low; });
+  const auto first = std::partition_point(mesh.panels().begin() + static_cast<std::ptrdiff_t>(range.first),
+                                          mesh.panels().begin() + static_cast<std::ptrdiff_t>(range.last),
+                                          [&](const Panel& panel) { return panel.high <= stretch.low; });
   const std::size_t count = high ? kResidualCoefficients : kLightCoefficients;
   double p[kResidualCoefficients];
   for (auto i = static_cast<std::size_t>(first - mesh.panels().begin()); i < range.last; ++i) {

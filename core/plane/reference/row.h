@@ -25,8 +25,8 @@ struct Row {
     double high = 1;
   };
 
-  Spectrum direct;         // Irradiance straight from emitters, lights and the environment.
-  double coordinates = 0;  // What it is off by, as coordinates are, for light of radiance 1.
+  Spectrum direct;                 // Irradiance straight from emitters, lights and the environment.
+  double coordinates = 0;          // What it is off by, as coordinates are, for light of radiance 1.
   std::vector<Stretch> stretches;  // Of what has panels, in the order of theta; each is seen once.
   std::vector<std::uint32_t> panels;
   // Irradiance from each Legendre polynomial on each of them: kLightCoefficients, and the rest up to
@@ -59,7 +59,8 @@ class RowBuilder {
         outlook_(caster, charts) {}
 
   // `before`, if not null: the row of the same receiver with the mesh that this one was made of. What is in it already,
-  // and what is seen from there, is not computed again; it is left empty. Without `high` the row has no high coefficients.
+  // and what is seen from there, is not computed again; it is left empty. Without `high` the row has no high
+  // coefficients.
   void Build(const PanelMesh& mesh, const Receiver& receiver, bool high, Row* before, Row& row);
 
  private:

@@ -5,7 +5,9 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -126,6 +128,42 @@ TEST(ReferenceRenderingTest, GoesOnAfterItWasCancelled) {
     rendering->Advance(executor, never, clock, Clock::Duration(0));
   }
   ASSERT_TRUE(rendering->done());
+  EXPECT_EQ(HashOf(*rendering->Snapshot()), HashOf(*Render(scene, Reference(1e-3)).field));
+}
+
+// Cancels within its n-th loop.
+class CancellingExecutor final : public Executor {
+ public:
+  CancellingExecutor(int loops, Cancellation& cancellation) : left_(loops), cancellation_(cancellation) {}
+  int threads() const override { return 1; }
+  void ParallelFor(std::size_t count, int /*max_threads*/, const std::function<void(std::size_t)>& work) override {
+    if (cancellation_.cancelled()) ++loops_after_;
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    if (--left_ == 0) cancellation_.Cancel();
+  }
+  int loops_after() const { return loops_after_; }
+
+ private:
+  int left_;
+  int loops_after_ = 0;
+  Cancellation& cancellation_;
+};
+
+// Between two steps of the solver too, which may be many.
+TEST(ReferenceRenderingTest, WorksNoMoreOnceItIsCancelled) {
+  const auto scene = FurnishedRoom(true, 5).Build();
+  const auto rendering = StartRendering(scene, PlanFor(*scene, Reference(1e-3)));
+  const SteadyClock clock;
+  int cancelled_in = 0;
+  for (int i = 0; !rendering->done() && i < 2000; ++i) {
+    Cancellation cancellation;
+    CancellingExecutor executor(1 + i % 3, cancellation);
+    rendering->Advance(executor, cancellation, clock, kForever);
+    EXPECT_EQ(executor.loops_after(), 0);
+    cancelled_in += cancellation.cancelled() ? 1 : 0;
+  }
+  ASSERT_TRUE(rendering->done());
+  EXPECT_GT(cancelled_in, 50);
   EXPECT_EQ(HashOf(*rendering->Snapshot()), HashOf(*Render(scene, Reference(1e-3)).field));
 }
 

@@ -9,11 +9,11 @@
 #include <cstring>
 #include <memory>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "core/plane/reference/reference_solver.h"
 #include "core/scene/scene.h"
+#include "tests/support/transport/random_room.h"
 #include "tests/support/transport/scene_maker.h"
 #include "tests/support/transport/solve_reference.h"
 
@@ -21,49 +21,6 @@ namespace flatlight {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u + 1) {}
-  double Between(double low, double high) {
-    state_ ^= state_ << 13, state_ ^= state_ >> 7, state_ ^= state_ << 17;
-    return low + (high - low) * static_cast<double>(state_ >> 11) * 0x1p-53;
-  }
-
- private:
-  std::uint64_t state_;
-};
-
-// Closed or open to the sky, with a lamp, straight and round things, and a light without a surface in every third.
-std::shared_ptr<const Scene> RandomScene(std::uint64_t seed) {
-  Random random(seed);
-  const double most = seed % 4 == 0 ? 0.97 : 0.8;
-  const auto look = [&] { return Look{.reflectance = {random.Between(0.3, most)}}; };
-  SceneMaker maker;
-  if (seed % 2 == 0) {
-    maker.Polyline("room", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, true, look());
-  } else {
-    maker.Segment("room", {-1, -1}, {1, -1}, look());
-    maker.Segment("wall", {1, -1}, {1, 0.6}, look());
-    maker.Environment({0.3});
-  }
-  Look lamp = look();
-  lamp.radiance = {1};
-  maker.Segment("lamp", {random.Between(0.1, 0.6), 0.9}, {random.Between(-0.6, 0), 0.95}, lamp);
-  if (seed % 3 == 0) maker.Light(PointLightDescription{{random.Between(-0.8, 0.8), 0.7}, {3}});
-  for (int i = 0; i < 3; ++i) {
-    const double x = random.Between(-0.8, 0.8), y = random.Between(-0.8, 0.6);
-    const double size = random.Between(0.05, 0.3), angle = random.Between(0, kTurn);
-    const std::string name = "thing" + std::to_string(i);
-    if (random.Between(0, 1) < 0.5) {
-      maker.Segment(name, {x, y}, {x + size * std::cos(angle), y + size * std::sin(angle)}, look());
-    } else {
-      maker.Arc(name, {{x, y}, size / 2, angle, random.Between(0, 1) < 0.5 ? -kTurn : random.Between(1, 5)}, look());
-    }
-  }
-  maker.Probe("room", 24).Probe("lamp", 5).Probe("thing0", 5);
-  return maker.Build();
-}
 
 struct Counts {
   int values = 0;
@@ -93,7 +50,7 @@ ReferenceOptions Options(double target) {
 TEST(ReferenceBoundsTest, NoErrorIsLargerThanItsBound) {
   Counts irradiance, gradient, hessian;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    const auto scene = RandomScene(seed);
+    const auto scene = RandomRoom(seed);
     const SolvedReference coarse = SolveReference(scene, Options(seed % 3 == 1 ? 1e-1 : 1e-2));
     const SolvedReference fine = SolveReference(scene, Options(1e-5));
     ASSERT_EQ(fine.state, ReferenceSolver::State::kReached) << seed;

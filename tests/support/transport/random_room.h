@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_TESTS_SUPPORT_TRANSPORT_RANDOM_ROOM_H_
+#define FLATLIGHT_TESTS_SUPPORT_TRANSPORT_RANDOM_ROOM_H_
+
+#include <cstdint>
+#include <memory>
+
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+// Grey rooms, closed or open to the sky, with a lamp, three straight and round things, and a light without a surface in
+// every third; every fourth reflects up to 0.97, the others up to 0.8. 34 probe points.
+std::shared_ptr<const Scene> RandomRoom(std::uint64_t seed);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_TESTS_SUPPORT_TRANSPORT_RANDOM_ROOM_H_
