@@ -16,7 +16,7 @@ namespace {
 // Of what is allowed in all, for panels that stay.
 constexpr double kLeft = 0.2;
 // Panels that add so much less than the worst wait until that one is better.
-constexpr double kWaits = 3e-3;
+constexpr double kWaits = 3e-2;
 constexpr double kShortest = 1e-12;
 constexpr std::size_t kMostEvents = 6;
 constexpr double kRatio = 0.25;
