@@ -75,7 +75,7 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
       for (int m = 0; m <= derivatives; ++m) {
         // Derivatives see more of what is not smooth.
         const double known = std::abs(off[m].value[c]), missed = absolute[m] * own;
-        sum.error[m].value[c] += (m == 0 ? known + missed : 1.25 * known + 4 * missed) + absolute[m] * other;
+        sum.error[m].value[c] += (m == 0 ? known + missed : 2 * known + 6 * missed) + absolute[m] * other;
       }
       share = std::max(share, std::abs(off[0].value[c]) + absolute[0] * own);
     }
@@ -147,10 +147,10 @@ void Reception::AddEnd(const Receiver& receiver, const PanelMesh& mesh, const Pa
   if (!errors || derivatives < 1) return;
   for (std::size_t c = 0; c < channels; ++c) {
     const std::size_t at = i * channels + c;
-    const double error = 1.25 * errors->size[at] + errors->value[at];
+    const double error = 2 * errors->size[at] + errors->value[at];
     sum.error[1].value[c] += error * std::abs(first);
     if (derivatives < 2) continue;
-    const double slope = 1.25 * errors->steep[at] * stretch + errors->slope[at];
+    const double slope = 2 * errors->steep[at] * stretch + errors->slope[at];
     sum.error[2].value[c] += error * std::abs(second) + slope * std::abs(slope_factor);
   }
 }
