@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -12,9 +11,14 @@
 #include "core/plane/exact/light_solver.h"
 #include "core/plane/ray_caster.h"
 #include "core/plane/triangulation/triangulation.h"
+#include "core/render/idle_pool.h"
+#include "core/render/ordered_work.h"
 #include "core/render/rendering.h"
 
 namespace flatlight {
+
+// How much of exact light a plan wants.
+ExactOptions ExactOptionsOf(const Plan& plan);
 
 // Direct light in closed form, point after point. A probe appears in the field when all its points are done.
 class ExactRendering final : public Rendering {
@@ -26,7 +30,7 @@ class ExactRendering final : public Rendering {
 
   void Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
                Clock::Duration budget) override;
-  bool done() const override { return done_points_ == points_.size(); }
+  bool done() const override { return work_.done(); }
   EndReason end_reason() const override { return EndReason::kConverged; }
   RenderProgress Progress() const override;
   std::shared_ptr<const Field> Snapshot() const override;
@@ -34,9 +38,6 @@ class ExactRendering final : public Rendering {
  private:
   // Evaluates [first, last); false if cancelled.
   bool Work(std::size_t first, std::size_t last, const Cancellation& cancellation);
-  // Solvers keep their working memory from one shard to the next: there are as many as ever worked at once.
-  std::unique_ptr<ExactSolver> TakeSolver();
-  void ReturnSolver(std::unique_ptr<ExactSolver> solver);
 
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const RayCaster> caster_;
@@ -46,13 +47,10 @@ class ExactRendering final : public Rendering {
   int derivatives_;                    // Asked for, whatever is computed.
   bool dark_;                          // Nothing emits: the values are there already.
   int max_threads_;
-  std::mutex solvers_mutex_;
-  std::vector<std::unique_ptr<ExactSolver>> idle_solvers_;
+  IdlePool<ExactSolver> solvers_;
   std::vector<const Receiver*> points_;
   std::vector<ExactValue> values_;  // By point.
-  std::size_t done_points_ = 0;     // From the first on.
-  double points_per_shard_ = 1;     // Measured; leaves no trace in results.
-  double elapsed_seconds_ = 0;      // In Advance.
+  OrderedWork work_;
 };
 
 }  // namespace flatlight

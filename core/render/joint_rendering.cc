@@ -2,6 +2,7 @@
 #include "core/render/joint_rendering.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace flatlight {
@@ -36,6 +37,11 @@ std::shared_ptr<const Field> JointRendering::Snapshot() const {
   auto field = std::make_shared<Field>(*points_->Snapshot());
   const std::shared_ptr<const Field> pictures = pictures_->Snapshot();
   field->rays += pictures->rays;
+  if (field->error_bound.has_value()) {
+    field->error_bound = pictures->error_bound.has_value()
+                             ? std::optional(std::max(*field->error_bound, *pictures->error_bound))
+                             : std::nullopt;
+  }
   for (std::size_t probe = 0; probe < field->probes.size(); ++probe) {
     if (!pictures->probes[probe].irradiance.empty()) field->probes[probe] = pictures->probes[probe];
   }

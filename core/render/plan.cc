@@ -56,6 +56,8 @@ void CheckRanges(const Settings& settings, Diagnostics& diagnostics) {
   }
 }
 
+bool PicturesAlone(const Scene& scene) { return scene.traits().pixels > 0 && scene.traits().probe_points == 0; }
+
 void CheckDerivatives(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   const bool none = settings.derivatives.value_or(Derivatives::kHessian) == Derivatives::kNone;
   if (settings.method == Method::kPathTracing && settings.derivatives.has_value() && !none) {
@@ -70,6 +72,9 @@ void CheckDerivatives(const Scene& scene, const Settings& settings, Diagnostics&
         "settings.derivatives",
         "ray-tracing gives the Hessian of direct light alone, and this scene reflects: ask for the gradient, "
         "set max bounces to 0, or use reference");
+  }
+  if (settings.method == Method::kExact && settings.derivatives.has_value() && !none && PicturesAlone(scene)) {
+    diagnostics.Add("settings.derivatives", "pictures have none: leave this out");
   }
   if (!settings.formulation.has_value()) return;
   if (settings.method != Method::kRayTracing) {
@@ -123,7 +128,7 @@ void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& d
 // Settings that the method would ignore, and scenes that it cannot do.
 void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   CheckDerivatives(scene, settings, diagnostics);
-  if (settings.method != Method::kPathTracing && scene.traits().pixels > 0) {
+  if (settings.method != Method::kPathTracing && settings.method != Method::kExact && scene.traits().pixels > 0) {
     diagnostics.Add("settings.method", NameOf(settings) +
                                            " gives irradiance at points, and a probe of this scene is a "
                                            "picture: use path-tracing");
@@ -158,7 +163,9 @@ void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diag
 void FillMethodDefaults(const Scene& scene, Plan& plan) {
   Settings& settings = plan.settings;
   if (settings.method == Method::kExact) {
-    if (!settings.derivatives.has_value()) settings.derivatives = Derivatives::kHessian;
+    if (!settings.derivatives.has_value()) {
+      settings.derivatives = PicturesAlone(scene) ? Derivatives::kNone : Derivatives::kHessian;
+    }
     return;
   }
   if (settings.method == Method::kReference) {
@@ -218,7 +225,7 @@ bool TrianglesPay(const Scene& scene, const Plan& plan) {
   const SceneTraits& traits = scene.traits();
   return plan.settings.method == Method::kExact && !plan.Takes(skip::kEmission) && !plan.Takes(skip::kVisibility) &&
          (traits.emitting_curves > 0 || traits.environment) && !traits.has_arcs && traits.elements <= kMostElements &&
-         2 * traits.probe_points >= traits.elements;
+         2 * (traits.probe_points + traits.pixels) >= traits.elements;
 }
 
 // Rays of the tree behind one of `samples` rays of the first level.
@@ -257,8 +264,13 @@ void AddPasses(const Scene& scene, Plan& plan) {
   if (pass.points > 0 || scene.traits().pixels == 0) plan.passes.push_back(pass);
   if (scene.traits().pixels == 0) return;
   PlanPass pictures;
-  pictures.name = "light followed through the pictures";
   pictures.points = static_cast<double>(scene.traits().pixels);
+  if (plan.settings.method == Method::kExact) {
+    pictures.name = "fluence in closed form in the middle of each pixel, and all over those where it bends";
+    plan.passes.push_back(pictures);
+    return;
+  }
+  pictures.name = "light followed through the pictures";
   pictures.samples = plan.picture_samples.value_or(0);
   if (!plan.Takes(skip::kEmission)) {
     pictures.expected_rays = pictures.points * pictures.samples * ExpectedVertices(scene, plan);
@@ -314,7 +326,7 @@ std::optional<Plan> MakePlan(const Scene& scene, const Settings& settings, Diagn
   plan.settings = settings;
   if (!settings.method.has_value()) {
     const bool sampling = settings.samples || settings.seed || settings.target_error || settings.time_limit;
-    const bool exact = DirectLightOnly(scene, settings) && !sampling && scene.traits().pixels == 0;
+    const bool exact = DirectLightOnly(scene, settings) && !sampling;
     plan.settings.method = exact ? Method::kExact : Method::kPathTracing;
   }
   CheckRanges(settings, diagnostics);

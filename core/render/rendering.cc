@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "core/render/exact_picture_rendering.h"
 #include "core/render/exact_rendering.h"
 #include "core/render/fluence_rendering.h"
 #include "core/render/joint_rendering.h"
@@ -18,7 +19,12 @@ std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, co
   auto caster = plan.Takes(skip::kEmission) ? nullptr : indexes.For(scene);
   if (plan.settings.method == Method::kExact) {
     auto triangulation = plan.triangles ? indexes.TrianglesFor(scene) : nullptr;
-    return std::make_unique<ExactRendering>(std::move(scene), std::move(caster), std::move(triangulation), plan);
+    const bool points = scene->traits().probe_points > 0;
+    if (scene->traits().pixels == 0) return std::make_unique<ExactRendering>(scene, caster, triangulation, plan);
+    auto pictures = std::make_unique<ExactPictureRendering>(scene, caster, triangulation, plan);
+    if (!points) return pictures;
+    return std::make_unique<JointRendering>(std::make_unique<ExactRendering>(scene, caster, triangulation, plan),
+                                            std::move(pictures));
   }
   if (plan.settings.method == Method::kRayTracing) {
     return std::make_unique<RayTracingRendering>(std::move(scene), std::move(caster), plan);

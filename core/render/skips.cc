@@ -105,8 +105,11 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
   const bool nothing_blocks = NothingBlocks(scene);
   const std::string nothing_reason = "nothing can stand between two points: blockers are not looked for";
   if (settings.method == Method::kExact) {
-    decisions.Add(skip::kVisibility, nothing_blocks && !traits.environment, nothing_reason,
-                  nothing_blocks ? "curves block the environment" : "curves may block each other");
+    const bool pictures = traits.pixels > 0;
+    decisions.Add(skip::kVisibility, nothing_blocks && !traits.environment && !pictures, nothing_reason,
+                  !nothing_blocks ? "curves may block each other"
+                  : pictures      ? "pictures may show what lies behind curves"
+                                  : "curves block the environment");
     const std::string reason = "exact light is direct: it has no paths and no samples";
     for (const char* name : {skip::kBounces, skip::kBlackPaths, skip::kUnseenEmitters, skip::kConvergedPoints}) {
       decisions.Add(name, false, "", reason);

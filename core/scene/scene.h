@@ -80,17 +80,19 @@ struct Curve {
   Spectrum EmittedRadiance(Side side) const { return side == Side::kFront || two_sided ? radiance : Spectrum{}; }
 };
 
-// A point at which irradiance is wanted. Normalised coordinates.
+// A point at which light is wanted. Normalised coordinates.
 struct Receiver {
   Point2 position;                       // On the piece.
   Vector2 offset;                        // From there to the point itself, if the piece stands for a Bézier.
-  Vector2 normal;                        // Unit, toward the side that receives.
+  Vector2 normal;                        // Unit, toward the side that receives; of a pixel along its middle direction.
   Vector2 tangent;                       // Unit, along increasing arc length; (normal.y, -normal.x) for a free point.
   double curvature = 0;                  // kappa: d(tangent)/d(arc length) = kappa * normal.
   double curvature_change = 0;           // d(kappa)/d(arc length).
   ElementId element = ElementId::kNone;  // The piece it lies on.
   double arc_length = 0;
   double displaced = 0;  // How far from where the author put it: see kLiftTouches.
+  // 0: irradiance, from the half circle. In (0, pi/2]: radiance summed up by angle, so far to both sides of the normal.
+  double half_angle = 0;
 };
 
 // A picture of a part of the plane. Normalised coordinates.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/math/tolerances.h"
+#include "core/math/trig.h"
 
 namespace flatlight {
 namespace {
@@ -20,7 +21,7 @@ class LightSum {
       : scene_(scene),
         coordinate_error_(scene.coordinate_error() + receiver.displaced),
         is_true_(!scene.traits().has_beziers),
-        derivatives_(options.derivatives),
+        derivatives_(receiver.half_angle > 0 ? 0 : options.derivatives),
         receiver_(receiver),
         value_(value) {}
 
@@ -46,6 +47,7 @@ class LightSum {
       // Two curves cross where their elements do, to the distance of these.
       if (edge.crossing) coordinate_error += scene_.bezier_distance();
     }
+    if (receiver_.half_angle > 0) return TurnByAngle(after, coordinate_error);
     const Edge& begin = edges_[1 - next_];
     const EdgeErrors errors = BoundErrors(edge, receiver_.curvature, coordinate_error, receiver_.curvature_change);
     const EdgeDerivatives derivatives =
@@ -72,6 +74,24 @@ class LightSum {
   }
 
  private:
+  // Where radiance is summed up by angle, between the sides of a pixel.
+  void TurnByAngle(const Spectrum& after, double coordinate_error) {
+    const Edge& edge = edges_[next_];
+    const double theta = std::copysign(AngleOf(std::max(0.0, edge.c), std::abs(edge.s)), edge.s);
+    const double turn = edge.kind == Edge::Kind::kHorizon ? 0 : 2 * coordinate_error * edge.q + 8 * kUnitRoundoff;
+    const double angle = std::clamp(theta, -receiver_.half_angle, receiver_.half_angle);
+    const double doubt = std::abs(theta) < receiver_.half_angle + turn ? turn : 0;
+    for (int channel = 0; channel < kChannels; ++channel) {
+      const double light = before_[channel] * (angle - angle_);
+      value_.irradiance[channel] += light;
+      value_.irradiance_error[channel] +=
+          std::abs(before_[channel] - after[channel]) * doubt + 4 * kUnitRoundoff * std::abs(light);
+      before_[channel] = after[channel];
+    }
+    angle_ = angle;
+    next_ = 1 - next_;
+  }
+
   const Scene& scene_;
   const double coordinate_error_;
   const bool is_true_;  // Elements are what they stand for.
@@ -80,6 +100,7 @@ class LightSum {
   ExactValue& value_;
   Spectrum before_;
   bool lit_ = false;
+  double angle_ = 0;
   Edge edges_[2];
   int next_ = 0;
 };

@@ -21,8 +21,9 @@
 namespace flatlight {
 
 // Of curves that emit, and of the environment. Normalised units: radiance; radiance per length; radiance per length
-// squared. Derivatives are per arc length along the receiver's tangent, its curvature included; at a visibility event
-// toward increasing arc length.
+// squared. Of a receiver that sums up radiance by angle the sum stands for irradiance, and there are no derivatives.
+// Derivatives are per arc length along the receiver's tangent, its curvature included; at a visibility event toward
+// increasing arc length.
 struct ExactValue {
   Spectrum irradiance;
   Spectrum gradient;
