@@ -37,6 +37,8 @@ constexpr Vector2 Left(Vector2 v) { return {-v.y, v.x}; }
 constexpr Vector2 Right(Vector2 v) { return {v.y, -v.x}; }
 constexpr double LengthSquared(Vector2 v) { return Dot(v, v); }
 inline double Length(Vector2 v) { return std::sqrt(LengthSquared(v)); }
+// The same direction, its larger component +-1: of any length but 0.
+inline Vector2 ScaledToUnit(Vector2 v) { return v / std::fmax(std::abs(v.x), std::abs(v.y)); }
 // Requires a length whose square is neither 0 nor infinite.
 inline Vector2 Normalized(Vector2 v) { return v / Length(v); }
 

@@ -51,7 +51,13 @@ bool ExactRendering::Work(std::size_t first, std::size_t last, const Cancellatio
   std::size_t i = first;
   for (; i < last && !cancellation.cancelled(); ++i) {
     values_[i] = solver->Evaluate(*points_[i]);
-    if (lights_) lights_->Add(*points_[i], values_[i]);
+    const double angle = 2 * points_[i]->half_angle;
+    if (angle > 0) {
+      values_[i].irradiance = (1 / angle) * values_[i].irradiance;
+      values_[i].irradiance_error = (1 / angle) * values_[i].irradiance_error;
+    } else if (lights_) {
+      lights_->Add(*points_[i], values_[i]);
+    }
   }
   solvers_.Return(std::move(solver));
   return i == last;
@@ -82,7 +88,7 @@ std::shared_ptr<const Field> ExactRendering::Snapshot() const {
           values.irradiance.push_back(units.irradiance * value.irradiance.value[c]);
           bound = std::max(bound, units.irradiance * value.irradiance_error.value[c]);
         }
-        AppendDerivatives(value, channels, derivatives_, units, values);
+        if (!probe.camera) AppendDerivatives(value, channels, derivatives_, units, values);
       }
     }
     point = end;

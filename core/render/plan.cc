@@ -56,7 +56,10 @@ void CheckRanges(const Settings& settings, Diagnostics& diagnostics) {
   }
 }
 
-bool PicturesAlone(const Scene& scene) { return scene.traits().pixels > 0 && scene.traits().probe_points == 0; }
+bool PicturesAlone(const Scene& scene) {
+  const SceneTraits& traits = scene.traits();
+  return traits.pixels + traits.camera_pixels > 0 && traits.probe_points == traits.camera_pixels;
+}
 
 void CheckDerivatives(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   const bool none = settings.derivatives.value_or(Derivatives::kHessian) == Derivatives::kNone;
@@ -74,7 +77,7 @@ void CheckDerivatives(const Scene& scene, const Settings& settings, Diagnostics&
         "set max bounces to 0, or use reference");
   }
   if (settings.method == Method::kExact && settings.derivatives.has_value() && !none && PicturesAlone(scene)) {
-    diagnostics.Add("settings.derivatives", "pictures have none: leave this out");
+    diagnostics.Add("settings.derivatives", "pictures and cameras have none: leave this out");
   }
   if (!settings.formulation.has_value()) return;
   if (settings.method != Method::kRayTracing) {
@@ -132,6 +135,12 @@ void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diag
     diagnostics.Add("settings.method", NameOf(settings) +
                                            " gives irradiance at points, and a probe of this scene is a "
                                            "picture: use path-tracing");
+  }
+  if (settings.method != Method::kPathTracing && settings.method != Method::kExact &&
+      scene.traits().camera_pixels > 0) {
+    diagnostics.Add("settings.method", NameOf(settings) +
+                                           " gives irradiance at points, and a probe of this scene is a "
+                                           "camera: use path-tracing");
   }
   if (settings.method == Method::kExact) {
     RefuseSampling(settings, diagnostics);
@@ -296,7 +305,11 @@ std::string Summary(const Scene& scene, const Plan& plan) {
   if (plan.settings.derivatives == Derivatives::kGradient) text += " and its gradient";
   if (plan.settings.derivatives == Derivatives::kHessian) text += " with gradient and Hessian";
   text += " at ";
-  if (points > 0 || pixels == 0) text += std::to_string(points) + (points == 1 ? " point" : " points");
+  if (points > 0 || pixels == 0) {
+    const std::size_t seen = scene.traits().camera_pixels, others = points - seen;
+    if (others > 0 || seen == 0) text += std::to_string(others) + (others == 1 ? " point" : " points");
+    if (seen > 0) text += (others > 0 ? " and " : "") + std::to_string(seen) + " pixels of cameras";
+  }
   if (pixels > 0) text += (points > 0 ? " and in " : "") + std::to_string(pixels) + " pixels";
   if (plan.settings.method != Method::kExact) {
     const bool branching = plan.settings.method == Method::kRayTracing;

@@ -151,6 +151,8 @@ void SceneBuilder::Normalise() {
       for (const ProbePointDescription& point : probe.points) box.Add(point.position);
     for (const ProbeDescription& probe : description_.probes)
       if (probe.fluence) box.Add(*probe.fluence->min), box.Add(*probe.fluence->max);
+    for (const ProbeDescription& probe : description_.probes)
+      if (probe.camera) box.Add(probe.camera->position);
     for (const LightDescription& light : description_.lights) {
       if (const auto* point = std::get_if<PointLightDescription>(&light.kind)) box.Add(point->position);
       if (const auto* spot = std::get_if<SpotLightDescription>(&light.kind)) box.Add(spot->position);
@@ -367,6 +369,8 @@ void SceneBuilder::AddProbes() {
       AddCurveProbe(description, probe);
     } else if (description.fluence) {
       probe.picture = PictureOf(*description.fluence);
+    } else if (description.camera) {
+      AddCamera(*description.camera, probe);
     } else {
       AddPointProbe(description, probe);
     }
@@ -441,9 +445,30 @@ void SceneBuilder::AddPointProbe(const ProbeDescription& description, Probe& pro
   for (const ProbePointDescription& point : description.points) {
     Receiver receiver;
     receiver.position = ToFrame(point.position);
-    const double largest = std::max(std::abs(point.normal.x), std::abs(point.normal.y));
-    receiver.normal = Normalized({point.normal.x / largest, point.normal.y / largest});
+    receiver.normal = Normalized(ScaledToUnit(point.normal));
     receiver.tangent = Right(receiver.normal);
+    probe.receivers.push_back(receiver);
+  }
+}
+
+void SceneBuilder::AddCamera(const CameraDescription& camera, Probe& probe) {
+  const Vector2 sight = Normalized(ScaledToUnit(camera.target - camera.position));
+  const bool to_left = camera.up && Cross(sight, ScaledToUnit(*camera.up)) > 0;
+  const Vector2 side = to_left ? Left(sight) : Right(sight);
+  const SinCosValue half = SinCos(0.5 * camera.field_of_view);
+  // Toward the borders between pixels, which are at equal distances on a screen.
+  const auto border = [&](std::uint32_t i) {
+    const double place = 2 * static_cast<double>(i) / *camera.width - 1;
+    return Normalized(half.cos * sight + place * half.sin * side);
+  };
+  probe.camera = true;
+  for (std::uint32_t i = 0; i < *camera.width; ++i) {
+    const Vector2 from = border(i), to = border(i + 1);
+    Receiver receiver;
+    receiver.position = ToFrame(camera.position);
+    receiver.normal = Normalized(from + to);
+    receiver.tangent = Right(receiver.normal);
+    receiver.half_angle = 0.5 * AngleOf(Dot(from, to), std::abs(Cross(from, to)));
     probe.receivers.push_back(receiver);
   }
 }
@@ -486,6 +511,7 @@ void SceneBuilder::Summarise() {
   if (largest_radius > 1) scene.coordinate_error_ += 4 * kUnitRoundoff * largest_radius;
   for (const Probe& probe : scene.probes_) {
     traits.probe_points += probe.receivers.size();
+    traits.camera_pixels += probe.camera ? probe.receivers.size() : 0;
     traits.pixels += probe.picture ? probe.picture->pixels() : 0;
   }
   scene.world_hash_ = HashWorld(description_);

@@ -124,6 +124,14 @@ struct FluenceDescription {
   std::optional<std::uint32_t> height;
 };
 
+struct CameraDescription {
+  Point2 position;
+  Point2 target;
+  std::optional<Vector2> up;
+  double field_of_view = 0;
+  std::optional<std::uint32_t> width;
+};
+
 struct ProbeDescription {
   std::string name;
   std::optional<std::string> curve;
@@ -133,6 +141,7 @@ struct ProbeDescription {
   std::optional<Side> side;
   std::vector<ProbePointDescription> points;
   std::optional<FluenceDescription> fluence;
+  std::optional<CameraDescription> camera;
 };
 
 struct SceneDescription {

@@ -93,8 +93,9 @@ void AddLight(const LightDescription& light, Hasher& hasher) {
 
 // What follows is no curve: no shape has this number.
 constexpr std::uint64_t kNoMoreCurves = 1000;
-// A picture follows, not another probe: those begin with 0 or 1.
+// A picture or a camera follows, not another probe: those begin with 0 or 1.
 constexpr std::uint64_t kPicture = 1000;
+constexpr std::uint64_t kCamera = 1001;
 
 }  // namespace
 
@@ -142,6 +143,13 @@ std::string HashProbes(const SceneDescription& description) {
       hasher.Add(std::uint64_t{probe.fluence->min.has_value()});
       if (probe.fluence->min) hasher.Add(*probe.fluence->min), hasher.Add(*probe.fluence->max);
       hasher.Add(std::uint64_t{*probe.fluence->width}), hasher.Add(std::uint64_t{*probe.fluence->height});
+    }
+    if (probe.camera) {
+      const CameraDescription& camera = *probe.camera;
+      hasher.Add(kCamera);
+      hasher.Add(camera.position), hasher.Add(camera.target);
+      hasher.Add(camera.up.value_or(Vector2{}));
+      hasher.Add(camera.field_of_view), hasher.Add(std::uint64_t{*camera.width});
     }
   }
   return hasher.Hex();

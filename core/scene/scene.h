@@ -113,6 +113,7 @@ struct Probe {
   Point2 high;
   std::vector<Receiver> receivers;
   std::optional<PixelGrid> picture;  // In place of receivers: fluence, averaged over each pixel.
+  bool camera = false;               // Receivers are its pixels.
 
   // Of which there are values.
   std::size_t points() const { return picture ? picture->pixels() : receivers.size(); }
@@ -129,9 +130,10 @@ struct SceneTraits {
   std::size_t curves = 0;
   std::size_t elements = 0;
   std::size_t emitting_curves = 0;
-  std::size_t probe_points = 0;  // Pixels aside.
-  std::size_t pixels = 0;        // Of all pictures.
-  std::size_t lights = 0;        // Without a surface.
+  std::size_t probe_points = 0;   // Pixels aside.
+  std::size_t camera_pixels = 0;  // Among them.
+  std::size_t pixels = 0;         // Of all pictures.
+  std::size_t lights = 0;         // Without a surface.
   double max_reflectance = 0;
   bool lambertian = true;    // Nothing but Lambertian curves reflects.
   bool environment = false;  // Light comes from infinitely far away, all around.

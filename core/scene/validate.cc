@@ -162,10 +162,11 @@ class Validator {
     CheckSpectrum(values, path, limits_.max_radiance, "0 to " + Number(limits_.max_radiance));
   }
 
-  void CheckDirection(Vector2 direction, const std::string& path) {
+  bool CheckDirection(Vector2 direction, const std::string& path) {
     const bool x = CheckRange(direction.x, -limits_.max_coordinate, limits_.max_coordinate, path + ".x");
     const bool y = CheckRange(direction.y, -limits_.max_coordinate, limits_.max_coordinate, path + ".y");
     if (x && y && direction == Vector2{}) diagnostics_.Add(path, "is (0, 0); a direction is needed");
+    return x && y && !(direction == Vector2{});
   }
 
   void CheckLight(std::size_t index) {
@@ -276,9 +277,13 @@ class Validator {
     const ProbeDescription& probe = scene_.probes[index];
     const std::string path = Item("probes", index);
     probes_.Add(probe.name, index);
-    const int kinds = (probe.curve ? 1 : 0) + (probe.points.empty() ? 0 : 1) + (probe.fluence ? 1 : 0);
-    if (kinds > 1) diagnostics_.Add(path, "has more than one of curve, points and fluence; exactly one is allowed");
-    if (kinds == 0) diagnostics_.Add(path, "has none of curve, points and fluence; exactly one is needed");
+    const int kinds =
+        (probe.curve ? 1 : 0) + (probe.points.empty() ? 0 : 1) + (probe.fluence ? 1 : 0) + (probe.camera ? 1 : 0);
+    if (kinds > 1) {
+      diagnostics_.Add(path, "has more than one of curve, points, fluence and camera; exactly one is allowed");
+    }
+    if (kinds == 0) diagnostics_.Add(path, "has none of curve, points, fluence and camera; exactly one is needed");
+    if (probe.camera) CheckCamera(*probe.camera, path + ".camera");
     if (probe.fluence) CheckPicture(*probe.fluence, path + ".fluence");
     if (probe.curve) {
       CheckCurveProbe(probe, path);
@@ -332,6 +337,32 @@ class Validator {
     const bool width = check_side(picture.width, "width");
     const bool height = check_side(picture.height, "height");
     if (width && height) pixels_ += std::size_t{*picture.width} * *picture.height;
+  }
+
+  void CheckCamera(const CameraDescription& camera, const std::string& path) {
+    const bool position = CheckPoint(camera.position, path + ".position");
+    const bool target = CheckPoint(camera.target, path + ".target");
+    const Vector2 sight = camera.target - camera.position;
+    const double largest = std::max(std::abs(sight.x), std::abs(sight.y));
+    if (position && target && !(largest > 0)) {
+      diagnostics_.Add(path + ".target", "is the camera's position; it must be another point");
+    }
+    if (camera.up && CheckDirection(*camera.up, path + ".up") && position && target && largest > 0 &&
+        Cross(ScaledToUnit(sight), ScaledToUnit(*camera.up)) == 0) {
+      diagnostics_.Add(path + ".up", "lies along the line of sight; it must point to one of its sides");
+    }
+    if (!(camera.field_of_view > 0 && camera.field_of_view < std::numbers::pi)) {
+      diagnostics_.Add(path + ".fieldOfView",
+                       "is " + Number(camera.field_of_view) + "; allowed: between 0 and pi, without these");
+    }
+    const std::string allowed = "1 to " + std::to_string(limits_.max_probe_points);
+    if (!camera.width) {
+      diagnostics_.Add(path + ".width", "is missing; a whole number of pixels, " + allowed + ", is needed");
+    } else if (*camera.width < 1 || *camera.width > limits_.max_probe_points) {
+      diagnostics_.Add(path + ".width", "is " + std::to_string(*camera.width) + "; allowed: " + allowed);
+    } else {
+      probe_points_ += *camera.width;
+    }
   }
 
   void CheckCurveProbe(const ProbeDescription& probe, const std::string& path) {

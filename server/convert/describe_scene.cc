@@ -117,6 +117,17 @@ class Describer {
       if (from.has_width()) probe.fluence->width = from.width();
       if (from.has_height()) probe.fluence->height = from.height();
     }
+    if (proto.has_camera()) {
+      const v1::Camera& from = proto.camera();
+      const Place camera{&place, "camera"};
+      probe.camera.emplace();
+      probe.camera->position = Point(from.has_position(), from.position(), {&camera, "position"});
+      probe.camera->target = Point(from.has_target(), from.target(), {&camera, "target"});
+      if (from.has_up()) probe.camera->up = Direction(true, from.up(), {&camera, "up"});
+      probe.camera->field_of_view = Number(from.has_field_of_view(), from.field_of_view(), {&camera, "fieldOfView"},
+                                           "a number between 0 and pi, in radians,");
+      if (from.has_width()) probe.camera->width = from.width();
+    }
     return probe;
   }
 

@@ -39,7 +39,11 @@ void FillProbeGeometry(const SceneOutline& scene, std::size_t probe, std::size_t
     }
     return;
   }
-  out.set_quantity(v1::ProbeResult::IRRADIANCE);
+  out.set_quantity(source.camera ? v1::ProbeResult::RADIANCE : v1::ProbeResult::IRRADIANCE);
+  if (source.camera) {
+    out.set_width(static_cast<std::uint32_t>(source.points()));
+    out.set_height(1);
+  }
   const bool on_curve = source.curve != CurveId::kNone;
   const int size = static_cast<int>(count);
   out.mutable_positions()->Reserve(out.positions_size() + 2 * size);

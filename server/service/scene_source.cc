@@ -30,7 +30,7 @@ bool WithinLimits(const v1::Scene& scene, const Limits& limits, Diagnostics& dia
     pieces += curve.has_polyline() ? static_cast<std::uint64_t>(curve.polyline().points_size()) : 1;
   }
   for (const v1::Probe& probe : scene.probes()) {
-    points += probe.count() + static_cast<std::uint64_t>(probe.points_size());
+    points += probe.count() + static_cast<std::uint64_t>(probe.points_size()) + probe.camera().width();
     pixels += static_cast<double>(probe.fluence().width()) * probe.fluence().height();
   }
   check("plane.curves", " curves and pieces of polylines", pieces, limits.max_curves);

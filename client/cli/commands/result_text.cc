@@ -12,10 +12,16 @@ namespace {
 
 constexpr double kDark = 0.01;
 
+std::string QuantityName(const v1::ProbeResult& probe) {
+  if (probe.quantity() == v1::ProbeResult::RADIANCE) return "radiance ";
+  return probe.has_width() ? "fluence " : "irradiance ";
+}
+
 std::string RangeText(const v1::ProbeResult& probe) {
   if (probe.irradiance().empty()) return "no points";
   const auto [low, high] = std::minmax_element(probe.irradiance().begin(), probe.irradiance().end());
-  return FormatValue(*low) + (*low == *high ? "" : " to " + FormatValue(*high)) + " W/m";
+  return FormatValue(*low) + (*low == *high ? "" : " to " + FormatValue(*high)) +
+         (probe.quantity() == v1::ProbeResult::RADIANCE ? " W/(rad m)" : " W/m");
 }
 
 std::string ErrorText(const v1::RenderResult& result, const v1::ProbeResult& probe) {
@@ -61,8 +67,7 @@ std::optional<double> LargestRelativeError(const v1::ProbeResult& probe) {
 std::string ResultText(const v1::RenderResult& result) {
   std::vector<std::vector<std::string>> rows;
   for (const v1::ProbeResult& probe : result.probes())
-    rows.push_back({Printable(probe.name()), (probe.has_width() ? "fluence " : "irradiance ") + RangeText(probe),
-                    ErrorText(result, probe)});
+    rows.push_back({Printable(probe.name()), QuantityName(probe) + RangeText(probe), ErrorText(result, probe)});
   const v1::Statistics& statistics = result.statistics();
   std::string text = FormatTable(rows);
   text += EndText(result.end_reason()) + " in " + FormatSeconds(statistics.wall_seconds());

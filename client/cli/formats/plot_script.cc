@@ -48,7 +48,8 @@ struct Panel {
 
 std::vector<Panel> Panels(const v1::RenderResult& result) {
   const std::array<PlotQuantity, 3> quantities = {
-      PlotQuantity{"irradiance", "standardError", "irradiance  {/:Italic E}  [W/m]"},
+      PlotQuantity{"irradiance", "standardError",
+                   HasCamerasAlone(result) ? "radiance  {/:Italic L}  [W/(rad m)]" : "irradiance  {/:Italic E}  [W/m]"},
       PlotQuantity{"gradient", "gradientError", "{/:Italic dE/ds}  [W/m^2]"},
       PlotQuantity{"hessian", "hessianError", "{/:Italic d}^2{/:Italic E/ds}^2  [W/m^3]"}};
   std::vector<Panel> panels;
@@ -152,8 +153,9 @@ std::string PlotScript(const v1::RenderResult& result, PlotForm form) {
     script += "set label 3 '" + panels[i].quantity.label + "' at screen 0.036, screen " + screen((top + bottom) / 2) +
               " center rotate by 90\n" + RangeCommand(panels[i]);
     if (last) {
-      script += HasArcLengths(result) ? "set xlabel 'arc length  {/:Italic s}  [m]'\nset format x '%g'\n"
-                                      : "set xlabel 'point'\nset format x '%g'\n";
+      script += HasCamerasAlone(result) ? "set xlabel 'angle from the middle  [degrees]'\nset format x '%g'\n"
+                : HasArcLengths(result) ? "set xlabel 'arc length  {/:Italic s}  [m]'\nset format x '%g'\n"
+                                        : "set xlabel 'point'\nset format x '%g'\n";
     } else {
       script += "unset xlabel\nset format x ''\n";
     }

@@ -2,6 +2,8 @@
 #include "client/cli/formats/plot_series.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "client/cli/formats/result_columns.h"
 
@@ -23,27 +25,52 @@ std::string Title(const v1::RenderResult& result, int probe, int channel) {
   return title;
 }
 
+// Of a camera's pixel from the middle of the line; the first ones are below 0.
+double DegreesOff(const v1::ProbeResult& camera, int pixel) {
+  const auto& looks = camera.normals();
+  const int last = static_cast<int>(camera.count()) - 1;
+  const double x = looks[0] + looks[2 * last], y = looks[1] + looks[2 * last + 1];
+  const auto angle_to = [&](int i) {
+    return std::atan2(x * looks[2 * i + 1] - y * looks[2 * i], x * looks[2 * i] + y * looks[2 * i + 1]);
+  };
+  return (angle_to(last) < 0 ? -1 : 1) * angle_to(pixel) * 180 / std::numbers::pi;
+}
+
 }  // namespace
+
+bool IsPicture(const v1::ProbeResult& probe) {
+  return probe.has_width() && probe.quantity() != v1::ProbeResult::RADIANCE;
+}
+
+bool HasCamerasAlone(const v1::RenderResult& result) {
+  const auto& probes = result.probes();
+  return !probes.empty() && std::all_of(probes.begin(), probes.end(), [](const v1::ProbeResult& probe) {
+    return probe.quantity() == v1::ProbeResult::RADIANCE && probe.normals_size() == 2 * static_cast<int>(probe.count());
+  });
+}
 
 bool HasArcLengths(const v1::RenderResult& result) {
   return std::all_of(result.probes().begin(), result.probes().end(), [](const v1::ProbeResult& probe) {
-    return probe.count() == 0 || probe.has_width() || !probe.arc_length().empty();
+    return probe.count() == 0 || IsPicture(probe) || !probe.arc_length().empty();
   });
 }
 
 std::vector<PlotSeries> PlotSeriesOf(const v1::RenderResult& result, const PlotQuantity& quantity) {
   const ResultColumn& values = Column(quantity.values);
   const ResultColumn& errors = Column(quantity.errors);
-  const bool arc_lengths = HasArcLengths(result);
+  const bool arc_lengths = HasArcLengths(result), angles = HasCamerasAlone(result);
   std::vector<PlotSeries> all;
   for (int number = 0; number < result.probes_size(); ++number) {
     const v1::ProbeResult& probe = result.probes(number);
-    if (values.values(probe).empty() || probe.has_width()) continue;
+    if (values.values(probe).empty() || IsPicture(probe)) continue;
     const bool band = !probe.standard_error().empty() && !errors.values(probe).empty();
     for (int channel = 0; channel < static_cast<int>(probe.channels()); ++channel) {
       PlotSeries series{Title(result, number, channel), number, channel, {}};
       for (int i = 0; i < static_cast<int>(probe.count()); ++i)
-        series.points.push_back({arc_lengths ? probe.arc_length(i) : i, ColumnValue(values, probe, i, channel),
+        series.points.push_back({angles        ? DegreesOff(probe, i)
+                                 : arc_lengths ? probe.arc_length(i)
+                                               : i,
+                                 ColumnValue(values, probe, i, channel),
                                  band ? 2 * ColumnValue(errors, probe, i, channel) : 0});
       series.points = Thinned(series.points, kMostPoints);
       all.push_back(std::move(series));

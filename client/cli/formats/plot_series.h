@@ -30,6 +30,12 @@ struct PlotSeries {
   std::vector<PlotPoint> points;
 };
 
+// Whether it is a picture of the plane, which no curve shows.
+bool IsPicture(const v1::ProbeResult& probe);
+
+// Whether the result is what cameras see, and nothing else: it is shown over the angle from the middle, in degrees.
+bool HasCamerasAlone(const v1::RenderResult& result);
+
 // Whether every probe with points has arc lengths.
 bool HasArcLengths(const v1::RenderResult& result);
 

@@ -14,6 +14,7 @@
 #include "client/cli/formats/json_text.h"
 #include "client/cli/formats/npy.h"
 #include "client/cli/formats/plot_script.h"
+#include "client/cli/formats/plot_series.h"
 #include "client/cli/outputs/atomic_file.h"
 #include "client/cli/outputs/picture_writer.h"
 #include "client/cli/outputs/tone_mapping.h"
@@ -42,13 +43,13 @@ absl::StatusOr<OutputForm> FormOf(const std::string& path) {
 }
 
 bool IsPlot(OutputForm form) { return form == OutputForm::kSvg || form == OutputForm::kPng; }
-bool IsPicture(OutputForm form) { return form == OutputForm::kExr || form == OutputForm::kHdr; }
+bool IsPictureForm(OutputForm form) { return form == OutputForm::kExr || form == OutputForm::kHdr; }
 
 absl::Status CheckOutput(const Output& output) {
   absl::Status tool = absl::OkStatus();
   if (IsPlot(output.form)) tool = FindGnuplot();
   // What .png shows is known when the result is: pictures if there are any.
-  if (tool.ok() && (IsPicture(output.form) || output.form == OutputForm::kPng)) tool = FindPictureModule();
+  if (tool.ok() && (IsPictureForm(output.form) || output.form == OutputForm::kPng)) tool = FindPictureModule();
   if (!tool.ok()) return OutputError(output.path, Reason(tool));
   return CheckWritable(output.path);
 }
@@ -60,16 +61,19 @@ absl::StatusOr<std::string> Pictures(const v1::RenderResult& result, const std::
   return PictureBytes(ending, pictures);
 }
 
-// Of pictures alone, as a screen shows them.
+// Of pictures and cameras alone, as a screen shows them.
 absl::StatusOr<std::string> ScreenPicture(const v1::RenderResult& result) {
   v1::RenderResult shown;
   for (const v1::ProbeResult& probe : result.probes())
     if (probe.has_width()) *shown.add_probes() = probe;
-  return PictureBytes(".png", {ToneMapped(StackedColour(PicturesOf(shown)))});
+  std::vector<Picture> pictures = PicturesOf(shown);
+  for (Picture& picture : pictures)
+    if (picture.height == 1) picture = Strip(picture);
+  return PictureBytes(".png", {ToneMapped(StackedColour(pictures))});
 }
 
 absl::StatusOr<std::string> Plot(const v1::RenderResult& result, PlotForm form) {
-  const auto plottable = [](const v1::ProbeResult& probe) { return !probe.has_width(); };
+  const auto plottable = [](const v1::ProbeResult& probe) { return !IsPicture(probe); };
   if (!std::any_of(result.probes().begin(), result.probes().end(), plottable) && result.probes_size() > 0)
     return absl::FailedPreconditionError("the result is a picture, not a curve to plot: use .png, .exr or .hdr");
   return RunGnuplot(PlotScript(result, form));

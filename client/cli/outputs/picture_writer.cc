@@ -42,6 +42,14 @@ bool HasPictures(const v1::RenderResult& result) {
                      [](const v1::ProbeResult& probe) { return probe.has_width(); });
 }
 
+Picture Strip(const Picture& line) {
+  Picture strip = line;
+  strip.height = std::clamp(line.width / 16, 8, 64);
+  for (int row = 1; row < strip.height; ++row)
+    strip.pixels.insert(strip.pixels.end(), line.pixels.begin(), line.pixels.end());
+  return strip;
+}
+
 Picture StackedColour(const std::vector<Picture>& pictures) {
   Picture stacked;
   stacked.channels = 3;

@@ -26,6 +26,9 @@ std::vector<Picture> PicturesOf(const v1::RenderResult& result);
 // Whether some probe is a picture.
 bool HasPictures(const v1::RenderResult& result);
 
+// A line of pixels high enough to be looked at.
+Picture Strip(const Picture& line);
+
 // One above the other with 3 channels, for formats that hold one picture: shorter rows are filled up with zeros.
 Picture StackedColour(const std::vector<Picture>& pictures);
 

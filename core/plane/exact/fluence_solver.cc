@@ -15,8 +15,8 @@ namespace {
 // The receivers at a point look along no direction that scenes are built in: their horizons meet few vertices.
 constexpr Vector2 kLook{0.5403023058681398, 0.8414709848078965};  // cos 1, sin 1.
 
-// From so many sides of a box on the first two terms of 1/r's mean are enough: the next is below 1e-11 of it, as much as
-// cancels in the closed form there.
+// From so many sides of a box on the first two terms of 1/r's mean are enough: the next is below 1e-11 of it, as much
+// as cancels in the closed form there.
 constexpr double kFar = 256;
 
 double AreaHyperbolicSine(double x) { return Log(x + std::sqrt(1 + x * x)); }

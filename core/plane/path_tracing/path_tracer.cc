@@ -24,8 +24,11 @@ std::vector<ElementId> EmittingPieces(const RayCaster& caster, const PathTracing
 }  // namespace
 
 PathTracer::Start::Start(const PathTracer& tracer, const Receiver& receiver, const EmitterSight& sight)
-    : tracer_(tracer), vertex_(VertexAt(tracer.scene_, receiver)), view_(tracer.emitters_, vertex_, sight) {
-  view_.LookCloser();
+    : tracer_(tracer),
+      vertex_(VertexAt(tracer.scene_, receiver)),
+      view_(tracer.emitters_, vertex_, sight),
+      half_angle_(receiver.half_angle) {
+  if (half_angle_ == 0) view_.LookCloser();
 }
 
 PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracingOptions& options)
@@ -53,6 +56,12 @@ PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracin
 }
 
 Spectrum PathTracer::DirectStep(const Receiver& receiver, const EmitterSight& sight) const {
+  if (receiver.half_angle > 0) {
+    Spectrum brightest = scene_.environment();
+    for (const Curve& curve : scene_.curves())
+      for (int c = 0; c < kMaxChannels; ++c) brightest[c] = std::max(brightest[c], curve.radiance[c]);
+    return brightest;
+  }
   return options_.nothing_blocks ? Spectrum{} : emitters_.Unblocked(VertexAt(scene_, receiver), sight);
 }
 
@@ -71,6 +80,7 @@ Spectrum PathTracer::BrightestReflection() const {
 }
 
 Spectrum PathTracer::DirectRounding(const Receiver& receiver, const EmitterSight& sight) const {
+  if (receiver.half_angle > 0) return {};  // Radiance is what it is.
   const Vertex vertex = VertexAt(scene_, receiver);
   return emitters_.Rounding(vertex, sight) + lights_.Rounding(vertex);
 }

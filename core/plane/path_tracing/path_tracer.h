@@ -42,7 +42,8 @@ class PathWalk;
 // densities per angle. Without other curves, with reflectance rho
 //   E = (sampled emitters) + w 2 Le(hit) + rho(hit) E(hit, on the side that was hit).
 // Glossy curves sample emitters and their own lobe in the same way, mirrors and glass go on in the one direction there
-// is. Light of lights without a surface is added at every vertex that is not specular; what they send through mirrors
+// is. Paths of a camera's pixel begin with a direction in it, all alike likely, and give the radiance that comes along
+// it. Light of lights without a surface is added at every vertex that is not specular; what they send through mirrors
 // and glass to such a vertex no path finds. The environment is found by chance.
 // Russian roulette ends paths of small weight and divides survivors by their chance: no length is too long to count.
 class PathTracer {
@@ -66,6 +67,7 @@ class PathTracer {
     const PathTracer& tracer_;
     Vertex vertex_;
     EmitterSampler::View view_;
+    double half_angle_;
   };
 
   // What shapes tell of the ways from the receiver to the emitters: worth remembering.

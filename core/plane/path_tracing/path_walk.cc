@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/math/check.h"
+#include "core/math/trig.h"
 #include "core/plane/materials/lossless.h"
 #include "core/plane/path_tracing/path_tracer.h"
 
@@ -38,10 +39,13 @@ class PathWalk {
   void Run(const PathTracer::Start& start, const Cancellation& cancellation) {
     const std::uint32_t last_depth = tracer_.options_.max_bounces.value_or(std::numeric_limits<std::uint32_t>::max());
     vertex_ = start.vertex_;
+    half_angle_ = start.half_angle_;
     for (std::uint32_t depth = 0; !cancellation.cancelled(); ++depth) {
       const SamplePair random = stream_.Pair(index_, depth);
       const EmitterSampler::View* view = nullptr;
-      if (scattering_ == nullptr) {
+      if (half_angle_ > 0) {
+        // A pixel: what it shows is found by rays alone.
+      } else if (scattering_ == nullptr) {
         view = depth == 0 ? &start.view_ : &Look(tracer_.sights_.FromElement(vertex_));
         GatherCertain(*view, random.u);
       } else if (!scattering_->specular()) {
@@ -128,6 +132,12 @@ class PathWalk {
 
   // Chooses where to go. From here on weight_ counts radiance along the ray.
   bool Leave(const SamplePair& random, std::uint32_t depth) {
+    if (half_angle_ > 0) {
+      const SinCosValue turn = SinCos((2 * random.v - 1) * half_angle_);
+      direction_ = vertex_.Direction(turn.sin, turn.cos);
+      half_angle_ = 0;
+      return true;
+    }
     if (scattering_ == nullptr) {
       const double sine = 2 * random.v - 1;
       cosine_ = CosineOf(sine);
@@ -207,6 +217,7 @@ class PathWalk {
   double cosine_ = 0;                       // Of the ray where it leaves.
   double density_ = 0;                      // With which it was chosen, per radian; 0 if specular.
   double compression_ = 1;                  // Of radiance by all borders so far.
+  double half_angle_ = 0;                   // Of the pixel that the path is to begin in; 0 once it has, or if in none.
   double last_largest_ = kInfinity;
   int lossless_ = 0;
   std::optional<EmitterSampler::View> view_;

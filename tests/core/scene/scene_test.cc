@@ -136,8 +136,8 @@ TEST(SceneTest, EachMistakeNamesPlaceValueAndWhatIsAllowed) {
       {[&](auto& s) {
          s.probes[0].points.push_back({{0, 1}, {0, 1}});
        },
-       "probes[0] ", "more than one of curve, points and fluence"},
-      {[&](auto& s) { s.probes[0].curve.reset(); }, "probes[0] ", "none of curve, points and fluence"},
+       "probes[0] ", "more than one of curve, points, fluence and camera"},
+      {[&](auto& s) { s.probes[0].curve.reset(); }, "probes[0] ", "none of curve, points, fluence and camera"},
   };
   for (const Case& c : cases) {
     SceneDescription scene = GoodScene();
@@ -205,6 +205,71 @@ TEST(SceneTest, PicturesCountInTheProbesHash) {
   EXPECT_TRUE(differs({Point2{0, 0}, Point2{1, 1}, 5, 6}));
   EXPECT_TRUE(differs({Point2{0, 0}, Point2{1, 1.5}, 5, 6}));
   EXPECT_FALSE(differs({Point2{0, 0}, Point2{1, 1.5}, 5, 6}));
+}
+
+SceneDescription SceneWithCamera(const CameraDescription& camera) {
+  SceneDescription scene = GoodScene();
+  scene.probes[0] = ProbeDescription();
+  scene.probes[0].name = "eye";
+  scene.probes[0].camera = camera;
+  return scene;
+}
+
+TEST(SceneTest, MistakesInCameras) {
+  struct Case {
+    CameraDescription camera;
+    std::string message;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Case> cases = {
+      {{{0, 1}, {1, 1}, {}, 1, {}}, "probes[0].camera.width is missing"},
+      {{{0, 1}, {1, 1}, {}, 1, 0}, "probes[0].camera.width is 0; allowed: 1 to 1000000"},
+      {{{0, 1}, {1, 1}, {}, 0, 5}, "probes[0].camera.fieldOfView is 0; allowed: between 0 and pi"},
+      {{{0, 1}, {1, 1}, {}, 3.15, 5}, "probes[0].camera.fieldOfView is 3.15"},
+      {{{0, 1}, {1, 1}, {}, nan, 5}, "probes[0].camera.fieldOfView is nan"},
+      {{{0, 1}, {0, 1}, {}, 1, 5}, "probes[0].camera.target is the camera's position"},
+      {{{0, nan}, {0, 1}, {}, 1, 5}, "probes[0].camera.position.y is nan"},
+      {{{0, 1}, {2, 1}, Vector2{-3, 0}, 1, 5}, "probes[0].camera.up lies along the line of sight"},
+      {{{0, 1}, {2, 1}, Vector2{0, 0}, 1, 5}, "probes[0].camera.up is (0, 0)"},
+  };
+  for (const Case& c : cases)
+    EXPECT_THAT(Mistakes(SceneWithCamera(c.camera)), testing::ElementsAre(HasSubstr(c.message))) << c.message;
+  SceneDescription both = SceneWithCamera({{0, 1}, {1, 1}, {}, 1, 5});
+  both.probes[0].fluence = FluenceDescription{{}, {}, 5, 5};
+  EXPECT_THAT(Mistakes(both), testing::Contains(HasSubstr("more than one of")));
+}
+
+// Pixels follow each other without gaps, equally wide on a screen; the line runs from left to right, or toward `up`.
+TEST(SceneTest, ACameraIsALineOfPixels) {
+  const auto scene = Build(SceneWithCamera({{0.5, 1}, {0.5, 3}, {}, 2, 4}));
+  const Probe& camera = scene->probes()[0];
+  EXPECT_TRUE(camera.camera);
+  EXPECT_EQ(scene->traits().camera_pixels, 4u);
+  ASSERT_EQ(camera.receivers.size(), 4u);
+  double angle = -1;  // From the line of sight, to the right.
+  for (int i = 0; i < 4; ++i) {
+    const Receiver& pixel = camera.receivers[static_cast<std::size_t>(i)];
+    const double middle = std::atan2(pixel.normal.x, pixel.normal.y);
+    EXPECT_NEAR(middle - pixel.half_angle, angle, 1e-14);
+    angle = middle + pixel.half_angle;
+    EXPECT_NEAR(std::tan(angle), std::tan(1.0) * (i - 1) / 2, 1e-14);
+  }
+  const auto turned = Build(SceneWithCamera({{0.5, 1}, {0.5, 3}, Vector2{-0.1, 7}, 2, 4}));
+  EXPECT_NEAR(turned->probes()[0].receivers[3].normal.x, -camera.receivers[3].normal.x, 1e-15);
+}
+
+TEST(SceneTest, CamerasCountInTheProbesHash) {
+  std::set<std::string> hashes{Build(GoodScene())->probe_hash()};
+  const auto differs = [&](const CameraDescription& camera) {
+    return hashes.insert(Build(SceneWithCamera(camera))->probe_hash()).second;
+  };
+  EXPECT_TRUE(differs({{0, 1}, {1, 1}, {}, 1, 5}));
+  EXPECT_TRUE(differs({{0, 2}, {1, 1}, {}, 1, 5}));
+  EXPECT_TRUE(differs({{0, 1}, {1, 2}, {}, 1, 5}));
+  EXPECT_TRUE(differs({{0, 1}, {1, 1}, Vector2{0, 1}, 1, 5}));
+  EXPECT_TRUE(differs({{0, 1}, {1, 1}, {}, 2, 5}));
+  EXPECT_TRUE(differs({{0, 1}, {1, 1}, {}, 1, 6}));
+  EXPECT_FALSE(differs({{0, 1}, {1, 1}, {}, 1, 6}));
 }
 
 TEST(SceneTest, AllMistakesAreReported) {

@@ -147,6 +147,42 @@ TEST(ResultConvertTest, APictureHasItsPlaceAndNoPoints) {
   EXPECT_EQ(TraitsToProto(scene->traits()).pixels(), 6);
 }
 
+TEST(ResultConvertTest, ACameraIsALineOfRadiance) {
+  v1::Scene proto;
+  Diagnostics diagnostics;
+  const auto scene = SceneFromJson(R"({"name":"eye","plane":{
+      "materials":[{"name":"red","lambertian":{"reflectance":[0.5]}}],
+      "curves":[{"name":"floor","segment":{"a":{"x":0,"y":0},"b":{"x":1,"y":0}},"material":"red"}]},
+      "probes":[{"name":"eye","camera":{"position":{"x":0,"y":2},"target":{"x":0,"y":0},"up":{"x":1,"y":0},
+                                        "fieldOfView":1,"width":3}}]})",
+                                   proto, diagnostics);
+  ASSERT_NE(scene, nullptr);
+  Field field;
+  field.probes.resize(1);
+  field.probes[0].irradiance = {1, 2, 3};
+  const v1::ProbeResult eye = ResultToProto(SceneOutline(*scene), field).probes(0);
+  EXPECT_EQ(eye.quantity(), v1::ProbeResult::RADIANCE);
+  EXPECT_EQ(eye.count(), 3u);
+  EXPECT_EQ(eye.width(), 3u);
+  EXPECT_EQ(eye.height(), 1u);
+  EXPECT_THAT(eye.positions(), Pointwise(DoubleNear(1e-12), std::vector<double>{0, 2, 0, 2, 0, 2}));
+  ASSERT_EQ(eye.normals_size(), 6);
+  EXPECT_NEAR(eye.normals(3), -1, 1e-12);
+  EXPECT_GT(eye.normals(4), 0.2);
+}
+
+TEST(ResultConvertTest, CamerasWantTheirNumbers) {
+  v1::Scene proto;
+  Diagnostics diagnostics;
+  SceneFromJson(R"({"name":"eye","plane":{"materials":[{"name":"red","lambertian":{"reflectance":[0.5]}}],
+      "curves":[{"name":"floor","segment":{"a":{"x":0,"y":0},"b":{"x":1,"y":0}},"material":"red"}]},
+      "probes":[{"name":"eye","camera":{"position":{"x":0,"y":2},"heigth":1,"width":3}}]})",
+                proto, diagnostics);
+  std::vector<std::string> paths;
+  for (const Diagnostic& diagnostic : diagnostics.kept()) paths.push_back(diagnostic.path);
+  EXPECT_THAT(paths, testing::IsSupersetOf({"probes[0].camera.heigth"}));
+}
+
 TEST(ResultConvertTest, EndReasons) {
   EXPECT_EQ(EndReasonToProto(EndReason::kConverged), v1::CONVERGED);
   EXPECT_EQ(EndReasonToProto(EndReason::kSamplesDone), v1::SAMPLES_DONE);

@@ -84,6 +84,15 @@ SceneMaker& SceneMaker::Picture(Point2 min, Point2 max, std::uint32_t width, std
   return *this;
 }
 
+SceneMaker& SceneMaker::Camera(Point2 position, Point2 target, double field_of_view, std::uint32_t width,
+                               std::optional<Vector2> up) {
+  ProbeDescription probe;
+  probe.name = "camera" + std::to_string(description_.probes.size());
+  probe.camera = CameraDescription{position, target, up, field_of_view, width};
+  description_.probes.push_back(std::move(probe));
+  return *this;
+}
+
 std::shared_ptr<const Scene> SceneMaker::Build() const {
   SceneDescription description = description_;
   if (description.name.empty()) description.name = "test";

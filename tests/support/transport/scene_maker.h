@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ class SceneMaker {
   SceneMaker& Probe(const std::string& curve, std::uint32_t count, Side side = Side::kFront);
   SceneMaker& PointProbe(Point2 position, Vector2 normal);
   SceneMaker& Picture(Point2 min, Point2 max, std::uint32_t width, std::uint32_t height);
+
+  SceneMaker& Camera(Point2 position, Point2 target, double field_of_view, std::uint32_t width,
+                     std::optional<Vector2> up = {});
 
   const SceneDescription& description() const { return description_; }
   std::shared_ptr<const Scene> Build() const;

@@ -91,5 +91,24 @@ TEST(PlotSeries, PointsWithoutArcLengthAreNumbered) {
   EXPECT_EQ(series[0].points[2].place, 2);
 }
 
+TEST(PlotSeries, CamerasAreShownOverTheAngle) {
+  v1::RenderResult result;
+  v1::ProbeResult& camera = AddProbe(result, "eye", 3);
+  camera.clear_arc_length();
+  EXPECT_FALSE(HasCamerasAlone(result));
+  camera.set_quantity(v1::ProbeResult::RADIANCE);
+  camera.set_width(3);
+  camera.set_height(1);
+  camera.clear_normals();
+  for (const double component : {0.6, 0.8, 1.0, 0.0, 0.6, -0.8}) camera.add_normals(component);
+  EXPECT_TRUE(HasCamerasAlone(result));
+  EXPECT_FALSE(IsPicture(camera));
+  const auto series = PlotSeriesOf(result, {"irradiance", "standardError", ""});
+  ASSERT_EQ(series.size(), 1U);
+  EXPECT_NEAR(series[0].points[0].place, -53.13, 0.01);
+  EXPECT_NEAR(series[0].points[1].place, 0, 1e-12);
+  EXPECT_NEAR(series[0].points[2].place, 53.13, 0.01);
+}
+
 }  // namespace
 }  // namespace flatlight
