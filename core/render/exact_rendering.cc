@@ -88,7 +88,12 @@ std::shared_ptr<const Field> ExactRendering::Snapshot() const {
           values.irradiance.push_back(units.irradiance * value.irradiance.value[c]);
           bound = std::max(bound, units.irradiance * value.irradiance_error.value[c]);
         }
-        if (!probe.camera) AppendDerivatives(value, channels, derivatives_, units, values);
+        if (probe.camera) continue;
+        AppendDerivatives(value, channels, derivatives_, units, values);
+        for (std::size_t c = 0; c < channels && derivatives_ > 0; ++c) {
+          values.rotation_gradient.push_back(units.irradiance * value.rotation.value[c]);
+          values.rotation_gradient_error.push_back(units.irradiance * value.rotation_error.value[c]);
+        }
       }
     }
     point = end;

@@ -16,6 +16,8 @@ struct ProbeField {
   std::vector<double> gradient_error;
   std::vector<double> hessian;  // W/m^3
   std::vector<double> hessian_error;
+  std::vector<double> rotation_gradient;  // W/(m rad)
+  std::vector<double> rotation_gradient_error;
   std::vector<double> samples;           // Paths; one value a point.
   std::vector<double> irradiance_error;  // W/m; bounds, of a method that states one for each value.
 };

@@ -106,6 +106,8 @@ RayTracingRendering::Gathered RayTracingRendering::Gather(std::size_t point, std
   result.whole = true;
   result.value[0] = IrradianceOf(gathered);
   if (orders_ > 1) {
+    result.value[kRotation] = RotationOf(*tree_, receiver, pass_rays_, key, cancellation, gathered, result.cast);
+    result.whole = !cancellation.cancelled();
     const Formulation formulation = settings_.formulation.value_or(Formulation::kStratified);
     if (formulation != Formulation::kArcLength) {
       LookPastEnds(*tree_, receiver, pass_rays_, key, cancellation, gathered, result.cast);
@@ -167,9 +169,10 @@ void RayTracingRendering::FinishPoint(std::size_t point, const Gathered* gathere
   for (std::size_t r = 0; r < kReplicates; ++r) steepest = std::max(steepest, gathered[r].steepest);
   // What one ray more on the brightest thing changes, there where the nearest is.
   const double step = brightest_ * 2.0 / pass_rays_;
-  const std::array<double, kOrders> steps = {step, 2 * step * steepest, 6 * step * steepest * steepest};
+  const std::array<double, kQuantities> steps = {step, 2 * step * steepest, 6 * step * steepest * steepest, step};
   std::array<double, kReplicates> values;
-  for (std::size_t order = 0; order < static_cast<std::size_t>(orders_); ++order) {
+  for (std::size_t order = 0; order < kQuantities; ++order) {
+    if (!Computes(static_cast<int>(order))) continue;
     for (int c = 0; c < kMaxChannels; ++c) {
       for (std::size_t r = 0; r < kReplicates; ++r) values[r] = gathered[r].value[order][c];
       const MeanEstimate mean = EstimateMean(values, steps[order]);
@@ -180,9 +183,10 @@ void RayTracingRendering::FinishPoint(std::size_t point, const Gathered* gathere
   if (!lights_) return;
   ExactValue direct;
   lights_->Add(points_[point], direct);
-  const std::array<const Spectrum*, kOrders> light = {&direct.irradiance, &direct.gradient, &direct.hessian};
-  for (std::size_t order = 0; order < static_cast<std::size_t>(orders_); ++order) {
-    estimate.value[order] = estimate.value[order] + *light[order];
+  const std::array<const Spectrum*, kQuantities> light = {&direct.irradiance, &direct.gradient, &direct.hessian,
+                                                          &direct.rotation};
+  for (std::size_t order = 0; order < kQuantities; ++order) {
+    if (Computes(static_cast<int>(order))) estimate.value[order] = estimate.value[order] + *light[order];
   }
 }
 
@@ -267,14 +271,16 @@ std::shared_ptr<const Field> RayTracingRendering::Snapshot() const {
   std::size_t point = 0;
   for (const Probe& probe : scene_->probes()) {
     ProbeField& values = field->probes.emplace_back();
-    const std::array<std::vector<double>*, kOrders> value = {&values.irradiance, &values.gradient, &values.hessian};
-    const std::array<std::vector<double>*, kOrders> error = {&values.standard_error, &values.gradient_error,
-                                                             &values.hessian_error};
-    const std::array<double, kOrders> unit = {units.irradiance, units.gradient, units.hessian};
+    const std::array<std::vector<double>*, kQuantities> value = {&values.irradiance, &values.gradient, &values.hessian,
+                                                                 &values.rotation_gradient};
+    const std::array<std::vector<double>*, kQuantities> error = {
+        &values.standard_error, &values.gradient_error, &values.hessian_error, &values.rotation_gradient_error};
+    const std::array<double, kQuantities> unit = {units.irradiance, units.gradient, units.hessian, units.irradiance};
     for (std::size_t i = 0; i < probe.receivers.size(); ++i, ++point) {
       const Estimate& estimate = estimates_[point];
       values.samples.push_back(static_cast<double>(kReplicates) * estimate.rays);
-      for (std::size_t order = 0; order < static_cast<std::size_t>(orders_); ++order) {
+      for (std::size_t order = 0; order < kQuantities; ++order) {
+        if (!Computes(static_cast<int>(order))) continue;
         for (int c = 0; c < scene_->channels(); ++c) {
           value[order]->push_back(unit[order] * estimate.value[order][c]);
           // Rays meet the arcs that follow Béziers: where there is hardly any noise, that counts.

@@ -34,13 +34,17 @@ class RayTracingRendering final : public Rendering {
 
  private:
   static constexpr int kOrders = 3;  // Irradiance, gradient, Hessian.
+  static constexpr int kRotation = kOrders;
+  static constexpr int kQuantities = kOrders + 1;
+  // Rotation comes with the gradient.
+  bool Computes(int quantity) const { return quantity == kRotation ? orders_ > 1 : quantity < orders_; }
   struct Estimate {
-    std::array<Spectrum, kOrders> value, error;
+    std::array<Spectrum, kQuantities> value, error;
     std::uint32_t rays = 0;  // Of a replicate's gather; 0: there is none yet.
   };
   // What one gather gives.
   struct Gathered {
-    std::array<Spectrum, kOrders> value;
+    std::array<Spectrum, kQuantities> value;
     double steepest = 0;  // Inverse distance of the nearest hit.
     double cast = 0;
     bool whole = false;

@@ -73,6 +73,8 @@ void FillProbeValues(const Field& field, int channels, std::size_t probe, std::s
   AddSlice(source.gradient_error, first, count, width, *out.mutable_gradient_error());
   AddSlice(source.hessian, first, count, width, *out.mutable_hessian());
   AddSlice(source.hessian_error, first, count, width, *out.mutable_hessian_error());
+  AddSlice(source.rotation_gradient, first, count, width, *out.mutable_rotation_gradient());
+  AddSlice(source.rotation_gradient_error, first, count, width, *out.mutable_rotation_gradient_error());
   AddSlice(source.samples, first, count, 1, *out.mutable_samples());
 }
 

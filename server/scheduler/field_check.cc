@@ -17,10 +17,16 @@ struct Quantity {
 };
 
 constexpr Quantity kQuantities[] = {
-    {"irradiance", &ProbeField::irradiance}, {"standard_error", &ProbeField::standard_error},
-    {"gradient", &ProbeField::gradient},     {"gradient_error", &ProbeField::gradient_error},
-    {"hessian", &ProbeField::hessian},       {"hessian_error", &ProbeField::hessian_error},
-    {"samples", &ProbeField::samples},       {"irradiance_error", &ProbeField::irradiance_error},
+    {"irradiance", &ProbeField::irradiance},
+    {"standard_error", &ProbeField::standard_error},
+    {"gradient", &ProbeField::gradient},
+    {"gradient_error", &ProbeField::gradient_error},
+    {"hessian", &ProbeField::hessian},
+    {"hessian_error", &ProbeField::hessian_error},
+    {"rotation_gradient", &ProbeField::rotation_gradient},
+    {"rotation_gradient_error", &ProbeField::rotation_gradient_error},
+    {"samples", &ProbeField::samples},
+    {"irradiance_error", &ProbeField::irradiance_error},
 };
 
 absl::Status NotFinite(const std::string& what, double value) {

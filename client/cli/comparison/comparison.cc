@@ -33,6 +33,7 @@ struct Values {
 
 Values Get(const v1::ProbeResult& probe, const std::string& quantity) {
   if (quantity == "gradient") return {&probe.gradient(), &probe.gradient_error()};
+  if (quantity == "rotation") return {&probe.rotation_gradient(), &probe.rotation_gradient_error()};
   if (quantity == "hessian") return {&probe.hessian(), &probe.hessian_error()};
   return {&probe.irradiance(), &probe.standard_error()};
 }
@@ -153,7 +154,7 @@ absl::StatusOr<Comparison> Compare(const v1::RenderResult& a, const v1::RenderRe
   double values = 0;
   for (const v1::ProbeResult& probe : a.probes()) {
     const v1::ProbeResult* other = FindProbe(b, probe.name());
-    for (const char* quantity : {"irradiance", "gradient", "hessian"})
+    for (const char* quantity : {"irradiance", "gradient", "rotation", "hessian"})
       if (Has(probe, quantity) && Has(*other, quantity)) {
         pairs.push_back({&probe, other, quantity});
         values += Get(probe, quantity).value->size();

@@ -15,7 +15,7 @@ namespace flatlight {
 // Degrees of freedom of a standard error: it comes from two halves of 8 independently randomised replicates.
 inline constexpr int kDegreesOfFreedom = 14;
 
-// Of one quantity ("irradiance", "gradient", "hessian") of one probe.
+// Of one quantity ("irradiance", "gradient", "rotation", "hessian") of one probe.
 struct QuantityComparison {
   std::string probe;
   std::string quantity;

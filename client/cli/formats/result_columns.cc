@@ -20,6 +20,8 @@ const std::vector<ResultColumn>& AllResultColumns() {
       {"gradientError", [](const Probe& p) -> const DoubleArray& { return p.gradient_error(); }, 0, 0},
       {"hessian", [](const Probe& p) -> const DoubleArray& { return p.hessian(); }, 0, 0},
       {"hessianError", [](const Probe& p) -> const DoubleArray& { return p.hessian_error(); }, 0, 0},
+      {"rotationGradient", [](const Probe& p) -> const DoubleArray& { return p.rotation_gradient(); }, 0, 0},
+      {"rotationGradientError", [](const Probe& p) -> const DoubleArray& { return p.rotation_gradient_error(); }, 0, 0},
       {"samples", [](const Probe& p) -> const DoubleArray& { return p.samples(); }, 1, 0}};
   return kColumns;
 }

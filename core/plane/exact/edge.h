@@ -95,9 +95,10 @@ inline EdgeDerivatives Derive(const Edge& edge, double curvature, double curvatu
   return d;
 }
 
-// Bounds on the rounding errors of s, s', s'' when every coordinate is known to `coordinate_error`.
+// Bounds on the rounding errors of s, c, s', s'' when every coordinate is known to `coordinate_error`.
 struct EdgeErrors {
   double s = 0;
+  double c = 0;
   double s_first = 0;
   double s_second = 0;
 };
@@ -109,13 +110,14 @@ inline EdgeErrors BoundErrors(const Edge& edge, double curvature, double coordin
   constexpr double u = kUnitRoundoff;
   if (edge.kind == Edge::Kind::kTouch) {
     const EdgeDerivatives d = Derive(edge, curvature);
-    return {2 * (c * edge.turn + 4 * u), std::abs(d.s_first), std::abs(d.s_second)};
+    return {2 * (c * edge.turn + 4 * u), 2 * (edge.turn + 4 * u), std::abs(d.s_first), std::abs(d.s_second)};
   }
   // The direction turns by the displacement over the distance; a touching point slides with it.
   const double turn = 2 * coordinate_error * q + 4 * u + edge.turn;
   const double cq = c * q, ccq = c * c * q, ccqq = ccq * q;
   EdgeErrors e;
   e.s = std::min(2.0, (c + edge.turn) * turn) + 4 * u;
+  e.c = std::min(1.0, turn) + 4 * u;
   if (k == 0 && r == 0 && curvature_change == 0) {
     e.s_first = (2 * cq + ccq) * turn + ccq * edge.stretch + 8 * u * ccq;
     e.s_second = (9 * cq * q + 6 * ccqq) * turn + 6 * ccqq * edge.stretch + 48 * u * ccqq;
@@ -126,7 +128,7 @@ inline EdgeErrors BoundErrors(const Edge& edge, double curvature, double coordin
         (k * k + 6 * k * q + 9 * cq * q + 3 * rccqqq) * turn + (3 * k * cq + 6 * ccqq + 3 * c * rccqqq) * relative_q +
         16 * u * (k * k + 3 * k * cq + 3 * ccqq + c * rccqqq) + std::abs(curvature_change) * (turn + 64 * u * c);
   }
-  return {2 * e.s, 2 * e.s_first, 2 * e.s_second};
+  return {2 * e.s, 2 * e.c, 2 * e.s_first, 2 * e.s_second};
 }
 
 }  // namespace flatlight

@@ -62,6 +62,9 @@ class LightSum {
       if (derivatives_ >= 1) {
         value_.gradient[channel] += jump * derivatives.s_first;
         value_.gradient_error[channel] += size * errors.s_first;
+        // Of a stretch of radiance L between two directions L (c_a - c_b).
+        value_.rotation[channel] -= jump * edge.c;
+        value_.rotation_error[channel] += size * errors.c;
       }
       if (derivatives_ >= 2) {
         value_.hessian[channel] += jump * derivatives.s_second;
@@ -78,7 +81,10 @@ class LightSum {
   void TurnByAngle(const Spectrum& after, double coordinate_error) {
     const Edge& edge = edges_[next_];
     const double theta = std::copysign(AngleOf(std::max(0.0, edge.c), std::abs(edge.s)), edge.s);
-    const double turn = edge.kind == Edge::Kind::kHorizon ? 0 : 2 * coordinate_error * edge.q + 8 * kUnitRoundoff;
+    const double turn = edge.kind == Edge::Kind::kHorizon ? 0
+                        : edge.kind == Edge::Kind::kTouch
+                            ? edge.turn + 8 * kUnitRoundoff
+                            : 2 * coordinate_error * edge.q + edge.turn + 8 * kUnitRoundoff;
     const double angle = std::clamp(theta, -receiver_.half_angle, receiver_.half_angle);
     const double doubt = std::abs(theta) < receiver_.half_angle + turn ? turn : 0;
     for (int channel = 0; channel < kChannels; ++channel) {
@@ -137,8 +143,9 @@ ExactValue ExactSolver::Evaluate(const Receiver& receiver) {
   for (int channel = 0; channel < options_.channels; ++channel)
     value.irradiance[channel] = std::max(0.0, value.irradiance[channel]);
   for (int channel = options_.channels; channel < kMaxChannels; ++channel) {
-    for (Spectrum* spectrum : {&value.irradiance, &value.gradient, &value.hessian, &value.irradiance_error,
-                               &value.gradient_error, &value.hessian_error}) {
+    for (Spectrum* spectrum :
+         {&value.irradiance, &value.gradient, &value.hessian, &value.rotation, &value.irradiance_error,
+          &value.gradient_error, &value.hessian_error, &value.rotation_error}) {
       (*spectrum)[channel] = (*spectrum)[0];
     }
   }

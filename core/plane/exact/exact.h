@@ -28,14 +28,17 @@ struct ExactValue {
   Spectrum irradiance;
   Spectrum gradient;
   Spectrum hessian;
+  // Per radian that the normal turns toward the tangent, the point fixed. With the gradient.
+  Spectrum rotation;
   // Bounds on the distance from the truth: rounding of coordinates and of the sums.
   Spectrum irradiance_error;
   Spectrum gradient_error;
   Spectrum hessian_error;
+  Spectrum rotation_error;
 };
 
 struct ExactOptions {
-  int derivatives = 2;  // 0: irradiance alone; 1: and the gradient; 2: and the Hessian.
+  int derivatives = 2;  // 0: irradiance alone; 1: and the gradient and rotation; 2: and the Hessian.
   // False where nothing can stand between an emitter and a receiver: the search is left out. Needed if the environment
   // shines.
   bool occlusion = true;

@@ -79,6 +79,9 @@ void LightSolver::AddPoint(const PointLight& light, const Receiver& receiver, Ex
   const double uncertain = 4 * caster_.scene().coordinate_error() / (distance * width) + 32 * kUnitRoundoff / width;
   const double steep = 2 * (1 / (distance * width) + std::abs(receiver.curvature));
   const double size = 1 / distance;
+  AddRotation(light.intensity,
+              (spot ? light.Share(-toward) : 1) * Dot(receiver.tangent, toward) / (distance * distance),
+              size * uncertain, value);
   AddTimes(light.intensity, {jet.value, jet.first, jet.second},
            {size * uncertain, 2 * size * steep * uncertain, 4 * size * steep * steep * uncertain}, value);
 }
@@ -90,8 +93,15 @@ void LightSolver::AddDirectional(const DirectionalLight& light, const Receiver& 
   if (caster_.ClosestHit({receiver.position, receiver.element}, toward).has_value()) return;
   const double kappa = receiver.curvature;
   const double uncertain = 16 * kUnitRoundoff + 4 * std::abs(kappa) * caster_.scene().coordinate_error();
+  AddRotation(light.irradiance, sine, uncertain, value);
   AddTimes(light.irradiance, {cosine, -kappa * sine, -kappa * kappa * cosine - receiver.curvature_change * sine},
            {uncertain, std::abs(kappa) * uncertain, kappa * kappa * uncertain}, value);
+}
+
+void LightSolver::AddRotation(const Spectrum& strength, double rotation, double error, ExactValue& value) const {
+  if (options_.derivatives < 1) return;
+  value.rotation = value.rotation + rotation * strength;
+  value.rotation_error = value.rotation_error + error * strength;
 }
 
 void LightSolver::AddTimes(const Spectrum& strength, const double (&unit)[3], const double (&error)[3],

@@ -23,6 +23,8 @@ class LightSolver {
   void AddPoint(const PointLight& light, const Receiver& receiver, ExactValue& value) const;
   void AddDirectional(const DirectionalLight& light, const Receiver& receiver, ExactValue& value) const;
   // The light's strength times what one of unit strength gives, and their errors: irradiance, first, second derivative.
+  // `rotation`: of the unit irradiance with the normal.
+  void AddRotation(const Spectrum& strength, double rotation, double error, ExactValue& value) const;
   void AddTimes(const Spectrum& strength, const double (&unit)[3], const double (&error)[3], ExactValue& value) const;
 
   const RayCaster& caster_;

@@ -11,10 +11,12 @@
 
 namespace flatlight {
 
-// Per arc length, and per arc length squared, along increasing arc length.
+// Per arc length, and per arc length squared, along increasing arc length; and per radian as the normal turns toward
+// the tangent.
 struct GatherDerivatives {
   Spectrum first;
   Spectrum second;
+  Spectrum rotation;
 };
 
 // Radiance jumps between neighbouring rays: at the break between them if it is known (LookPastEnds), else where their

@@ -46,6 +46,12 @@ void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t r
 // Irradiance: radiance times stretch.
 Spectrum IrradianceOf(const std::vector<GatheredRay>& gathered);
 
+// The derivative of irradiance per radian that the normal turns toward the tangent: the integral of radiance over the
+// cosine of its direction (THEORY 6.5). Unbiased, blockers or not, for rays as GatherHemicircle leaves them. Few sines
+// at the horizon are many cosines: there it casts two more rays.
+Spectrum RotationOf(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
+                    const Cancellation& cancellation, const std::vector<GatheredRay>& gathered, double& cast);
+
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_CORE_PLANE_RAY_TRACING_HEMICIRCLE_GATHER_H_

@@ -31,7 +31,7 @@ Settings Branching(std::uint32_t samples, std::uint32_t seed = 0) {
 TEST(RayTracingTest, StatedErrorsTellTheTruthInAFurnace) {
   const auto scene = SquareRoom({.reflectance = {0.6}, .radiance = {1}}, 2).Build();
   for (const Formulation formulation : {Formulation::kStratified, Formulation::kPolyline, Formulation::kArcLength}) {
-    HonestErrors irradiance, gradient, wrong;
+    HonestErrors irradiance, gradient, rotation, wrong;
     for (std::uint32_t seed = 0; seed < 40; ++seed) {
       Settings settings = Branching(128, seed);
       settings.formulation = formulation;
@@ -41,6 +41,7 @@ TEST(RayTracingTest, StatedErrorsTellTheTruthInAFurnace) {
           irradiance.Add(probe.irradiance[i], 5, probe.standard_error[i]);
           wrong.Add(1.05 * probe.irradiance[i], 5, probe.standard_error[i]);
           gradient.Add(probe.gradient[i], 0, probe.gradient_error[i]);
+          rotation.Add(probe.rotation_gradient[i], 0, probe.rotation_gradient_error[i]);
         }
       }
     }
@@ -50,6 +51,8 @@ TEST(RayTracingTest, StatedErrorsTellTheTruthInAFurnace) {
     EXPECT_FALSE(wrong.Unbiased()) << "a twentieth more light must be noticed";
     EXPECT_TRUE(gradient.Unbiased()) << gradient.MeanZ();
     EXPECT_LT(gradient.MeanSquareZ(), 1.6);
+    EXPECT_TRUE(rotation.Unbiased()) << rotation.MeanZ();
+    EXPECT_LT(rotation.MeanSquareZ(), 1.6);
   }
 }
 
@@ -99,6 +102,68 @@ TEST(RayTracingTest, GradientIsThatOfTheIrradiance) {
                 5 * std::hypot(field.gradient_error[0], 8 * std::sqrt(variance / 2) / (12 * kStep)) + 2e-3);
     EXPECT_LT(field.gradient_error[0], 0.02);
     EXPECT_GT(std::abs(difference), 0.3);
+  }
+}
+
+// A turning normal: irradiance is a function of it alone whose first two harmonics tell the derivative, found by path
+// tracing at normals aside. Near a corner, where what the horizon shows varies along the wall.
+TEST(RayTracingTest, RotationIsThatOfTheIrradiance) {
+  SceneMaker maker;
+  maker.Segment("floor", {0, 0}, {2, 0}, {.reflectance = {0.6}})
+      .Segment("wall", {0, 1.5}, {0, 0}, {.reflectance = {0.8}});
+  maker.Segment("lamp", {1.6, 1}, {0.8, 1.2}, {.radiance = {2}});
+  maker.Light(PointLightDescription{{1, 0.8}, {2}}).Environment({0.3});
+  const Point2 place{0.15, 0.3};
+  constexpr double kStep = 0.1;
+  SceneMaker points = maker;
+  for (const double turn : {-2 * kStep, -kStep, kStep, 2 * kStep})
+    points.PointProbe(place, {std::sin(turn), std::cos(turn)});
+  const auto traced = Render(points.Build(), Sampled(1u << 16)).field;
+  const auto value = [&](std::size_t i) { return traced->probes[i].irradiance[0]; };
+  double variance = 0;
+  for (const ProbeField& probe : traced->probes) variance += probe.standard_error[0] * probe.standard_error[0];
+  const double difference = (8 * (value(2) - value(1)) - (value(3) - value(0))) / (12 * kStep);
+  const double noise = 8 * std::sqrt(variance / 2) / (12 * kStep);
+  EXPECT_GT(std::abs(difference), 0.3);
+  const auto scene = maker.PointProbe(place, {0, 1}).Build();
+  for (const Formulation formulation : {Formulation::kStratified, Formulation::kPolyline, Formulation::kArcLength}) {
+    // Few rays a gather show what is biased by their number.
+    HonestErrors errors;
+    double mean = 0;
+    constexpr int kSeeds = 200;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+      Settings settings = Branching(256, seed);
+      settings.formulation = formulation;
+      const ProbeField field = Render(scene, settings).field->probes[0];
+      errors.Add(field.rotation_gradient[0], difference, field.rotation_gradient_error[0]);
+      mean += field.rotation_gradient[0] / kSeeds;
+      EXPECT_LT(field.rotation_gradient_error[0], 0.15);
+    }
+    EXPECT_NEAR(mean, difference, 5 * noise + 0.01) << static_cast<int>(formulation);
+    EXPECT_LT(errors.MeanSquareZ(), 1.6) << static_cast<int>(formulation);
+  }
+}
+
+// Close to a wall whose lowest part, all that is seen along the horizon, is darker than the rest.
+TEST(RayTracingTest, RotationIsNotBiasedByFewRays) {
+  SceneMaker maker;
+  maker.Segment("floor", {0, 0}, {1, 0}, {.reflectance = {0}});
+  maker.Segment("wall", {0, 1}, {0, 0}, {.reflectance = {0.9}}).Segment("shelf", {0.4, 0.1}, {0.9, 0.1});
+  maker.Segment("lamp", {1, 0}, {1, 1}, {.radiance = {3}}).PointProbe({0.04, 0}, {0, 1});
+  const auto scene = maker.Build();
+  for (const Formulation formulation : {Formulation::kStratified, Formulation::kPolyline}) {
+    Settings settings = Branching(1u << 17);
+    settings.formulation = formulation;
+    const ProbeField truth = Render(scene, settings).field->probes[0];
+    HonestErrors errors;
+    for (std::uint32_t seed = 0; seed < 400; ++seed) {
+      settings.samples = 256;
+      settings.seed = seed;
+      const ProbeField field = Render(scene, settings).field->probes[0];
+      errors.Add(field.rotation_gradient[0], truth.rotation_gradient[0], field.rotation_gradient_error[0]);
+    }
+    EXPECT_TRUE(errors.Unbiased()) << errors.MeanZ();
+    EXPECT_LT(errors.MeanSquareZ(), 1.6);
   }
 }
 

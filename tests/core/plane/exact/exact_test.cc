@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "core/plane/exact/edge.h"
+#include "core/plane/exact/light_solver.h"
+#include "core/plane/ray_caster.h"
 #include "core/scene/scene.h"
 #include "tests/core/plane/exact/oracle.h"
 #include "tests/core/plane/exact/test_scenes.h"
@@ -398,6 +400,52 @@ TEST(ExactTest, RandomScenesAgreeWithTheOracle) {
   }
   EXPECT_GT(agreement.compared, 2000);
   EXPECT_LT(agreement.skipped, agreement.compared / 100);
+}
+
+// Against differences of the irradiance as the normal turns, at points on the floor and free ones, by all ways of
+// finding what is seen.
+TEST(ExactTest, RotationIsThatOfTheIrradiance) {
+  std::mt19937 random(7);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 8) / 16777216.0;
+  };
+  constexpr double kStep = 1e-3;
+  for (int round = 0; round < 20; ++round) {
+    SceneDescription scene = EmptyScene();
+    for (int i = 0; i < 6; ++i) {
+      const Point2 a{uniform(-1, 1), uniform(0.3, 1.5)};
+      AddCurve(scene, SegmentDescription{a, {a.x + uniform(-0.5, 0.5), a.y + uniform(-0.3, 0.3)}}, i % 3);
+    }
+    if (round % 2 == 0) AddCurve(scene, ArcDescription{{uniform(-1, 1), 2.5}, 0.4, 0, -6.283185307179586}, 1.5);
+    if (round % 4 > 1) scene.environment = EnvironmentDescription{{0.7}};
+    scene.lights.push_back({"bulb", PointLightDescription{{0.1, 3.2}, {2}}});
+    scene.lights.push_back({"spot", SpotLightDescription{{-3, 0.2}, {1, 0}, {3}, 0.1, 1.5}});
+    scene.lights.push_back({"sun", DirectionalLightDescription{{-0.3, -1}, {0.2}}});
+    ProbeDescription points;
+    points.name = "points";
+    const Point2 place{uniform(-1, 1), uniform(-0.5, 0.1)};
+    for (const double turn : {-2 * kStep, -kStep, 0.0, kStep, 2 * kStep}) {
+      const double angle = 0.3 + turn;  // From y toward x, the tangent's side.
+      points.points.push_back({place, {std::sin(angle), std::cos(angle)}});
+    }
+    scene.probes.push_back(points);
+    const auto built = Build(scene);
+    ASSERT_TRUE(built);
+    const RayCaster caster(built);
+    ExactSolver solver(*built, caster.bvh(), ExactOptions{});
+    const LightSolver lights(caster, ExactOptions{});
+    std::vector<ExactValue> values;
+    for (const Receiver& receiver : built->probes().back().receivers) {
+      values.push_back(solver.Evaluate(receiver));
+      lights.Add(receiver, values.back());
+    }
+    const auto e = [&](std::size_t i) { return values[i].irradiance[0]; };
+    const double difference = (8 * (e(3) - e(1)) - (e(4) - e(0))) / (12 * kStep);
+    EXPECT_NEAR(values[2].rotation[0], difference, 2e-9 * (1 + e(2))) << round;
+    EXPECT_GT(values[2].rotation_error[0], 0);
+    EXPECT_LT(values[2].rotation_error[0], 1e-12);
+    EXPECT_GT(std::abs(difference), 1e-5);
+  }
 }
 
 }  // namespace
