@@ -222,7 +222,9 @@ template <int kChannels>
   SetVertexEdge(Dot(receiver.tangent, to), Dot(receiver.normal, to), triangulation_->vertices()[limit.vertex], edge);
   const EdgeErrors errors = BoundErrors(edge, receiver.curvature, slit);
   for (int channel = 0; channel < kChannels; ++channel) {
-    value.irradiance_error[channel] += brightest_[channel] * errors.s;
+    // Where radiance is summed up by angle, and in rotation, no cosine makes it less.
+    value.irradiance_error[channel] += brightest_[channel] * (receiver.half_angle > 0 ? errors.c : errors.s);
+    if (options_.derivatives >= 1) value.rotation_error[channel] += brightest_[channel] * errors.c;
     if (options_.derivatives >= 1) value.gradient_error[channel] += brightest_[channel] * errors.s_first;
     if (options_.derivatives >= 2) value.hessian_error[channel] += brightest_[channel] * errors.s_second;
   }
@@ -312,7 +314,8 @@ void ExactSolver::AddMeetings(const Receiver& receiver, ExactValue& value) const
         BoundErrors(meeting.edge, receiver.curvature, scene_.coordinate_error() + receiver.displaced);
     for (int channel = 0; channel < kChannels; ++channel) {
       const double size = std::max(first.radiance[channel], second.radiance[channel]);
-      value.irradiance_error[channel] += size * errors.s;
+      value.irradiance_error[channel] += size * (receiver.half_angle > 0 ? errors.c : errors.s);
+      if (options_.derivatives >= 1) value.rotation_error[channel] += size * errors.c;
       if (options_.derivatives >= 1) value.gradient_error[channel] += size * errors.s_first;
       if (options_.derivatives >= 2) value.hessian_error[channel] += size * errors.s_second;
     }
