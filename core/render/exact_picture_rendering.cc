@@ -75,8 +75,8 @@ const ExactPictureRendering::Picture& ExactPictureRendering::PictureOf(std::size
 
 Point2 ExactPictureRendering::Middle(const Picture& picture, std::size_t pixel) const {
   const std::size_t index = pixel - picture.first;
-  const double x = static_cast<double>(index % picture.grid.width) + 0.5;
-  const double y = static_cast<double>(index / picture.grid.width) + 0.5;
+  const std::size_t column = index % picture.grid.width, row = index / picture.grid.width;
+  const double x = static_cast<double>(column) + 0.5, y = static_cast<double>(row) + 0.5;
   return picture.grid.low + Vector2{x * picture.box.x, y * picture.box.y};
 }
 

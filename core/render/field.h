@@ -2,8 +2,13 @@
 #ifndef FLATLIGHT_CORE_RENDER_FIELD_H_
 #define FLATLIGHT_CORE_RENDER_FIELD_H_
 
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
+
+#include "core/math/vec.h"
+#include "core/scene/scene.h"
 
 namespace flatlight {
 
@@ -20,6 +25,20 @@ struct ProbeField {
   std::vector<double> rotation_gradient_error;
   std::vector<double> samples;           // Paths; one value a point.
   std::vector<double> irradiance_error;  // W/m; bounds, of a method that states one for each value.
+  std::vector<double> estimated_error;   // W/m; of a biased method, no bound.
+};
+
+// A cache record, in world units. Arrays by channel; one that is not known is empty.
+struct RecordField {
+  Point2 position;
+  Vector2 normal;
+  std::string curve;  // Its name; empty for free points.
+  Side side = Side::kFront;
+  std::vector<double> irradiance;            // W/m
+  std::vector<double> gradient;              // W/m^2
+  std::vector<double> hessian;               // W/m^3
+  double left_radius = 0, right_radius = 0;  // m, against and along the track.
+  std::uint32_t wave = 0;
 };
 
 // The state of a rendering: cumulative, a newer one replaces an older one.
@@ -27,6 +46,8 @@ struct Field {
   std::vector<ProbeField> probes;
   std::optional<double> error_bound;  // Deterministic methods: no irradiance is further from the truth. W/m.
   double rays = 0;
+  // In the order in which they were made: a newer field has more of them, and may have other radii.
+  std::vector<RecordField> records;
 };
 
 struct RenderProgress {

@@ -17,6 +17,9 @@ namespace {
 constexpr std::uint32_t kDefaultSamples = 1024;
 // Of ray tracing, whose rays branch.
 constexpr std::uint32_t kDefaultFirstRays = 256;
+// Of a cache record, whose rays branch.
+constexpr std::uint32_t kDefaultGatherRays = 1024;
+constexpr double kDefaultTolerance = 0.01;
 // Of a pixel: a path goes through hundreds of them.
 constexpr std::uint32_t kDefaultPictureSamples = 8;
 constexpr double kReferenceError = 1e-6;
@@ -61,11 +64,14 @@ bool PicturesAlone(const Scene& scene) {
   return traits.pixels + traits.camera_pixels > 0 && traits.probe_points == traits.camera_pixels;
 }
 
+std::string NameOf(const Settings& settings) { return MethodNames()[static_cast<std::size_t>(*settings.method)]; }
+
 void CheckDerivatives(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   const bool none = settings.derivatives.value_or(Derivatives::kHessian) == Derivatives::kNone;
-  if (settings.method == Method::kPathTracing && settings.derivatives.has_value() && !none) {
+  const bool gives_none = settings.method == Method::kPathTracing || settings.method == Method::kIrradianceCaching;
+  if (gives_none && settings.derivatives.has_value() && !none) {
     diagnostics.Add("settings.derivatives",
-                    "path-tracing gives none: leave this out, or use exact, ray-tracing or reference");
+                    NameOf(settings) + " gives none: leave this out, or use exact, ray-tracing or reference");
   }
   // Where radiance varies along what appears behind an edge, the second derivative has a term that rays do not tell
   // (THEORY 18 B6).
@@ -87,6 +93,63 @@ void CheckDerivatives(const Scene& scene, const Settings& settings, Diagnostics&
   }
 }
 
+// Whether panels can tell the light of a scene. `path`: of the setting that asks for them; `other`: what to use else.
+void CheckPanels(const Scene& scene, bool reflects, const std::string& path, const std::string& other,
+                 Diagnostics& diagnostics) {
+  if (reflects && !scene.traits().lambertian) {
+    const auto curve = std::find_if(scene.curves().begin(), scene.curves().end(), [](const Curve& c) {
+      return !std::holds_alternative<Lambertian>(c.material) && !c.reflectance.IsBlack();
+    });
+    diagnostics.Add(path, "reference needs a scene that reflects by lambertian materials alone, and curve \"" +
+                              curve->name + "\" has another: use " + other);
+  }
+  if (scene.traits().elements > kMostReferencePieces) {
+    diagnostics.Add(path, "reference does scenes of up to " + Text(kMostReferencePieces) +
+                              " straight and arced pieces, and this one has " + Text(scene.traits().elements) +
+                              ": use " + other);
+  }
+}
+
+// Settings of irradiance caching, and those that it has no use for.
+void CheckCaching(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
+  if (settings.method != Method::kIrradianceCaching) {
+    const std::string reason = "applies to irradiance-caching alone: leave this out, or use that";
+    if (settings.error_control) diagnostics.Add("settings.errorControl", reason);
+    if (settings.extrapolation) diagnostics.Add("settings.extrapolation", reason);
+    if (settings.tolerance) diagnostics.Add("settings.tolerance", reason);
+    if (settings.max_records) diagnostics.Add("settings.maxRecords", reason);
+    if (settings.gather) diagnostics.Add("settings.gather", reason);
+    return;
+  }
+  if (settings.extrapolation > 2u)
+    diagnostics.Add("settings.extrapolation", "is " + Text(*settings.extrapolation) + ", must be 0, 1 or 2");
+  if (settings.tolerance && !(*settings.tolerance > 0 && *settings.tolerance <= 1))
+    diagnostics.Add("settings.tolerance", "is " + Text(*settings.tolerance) + ", must be in (0, 1]");
+  if (settings.max_records == 0u) diagnostics.Add("settings.maxRecords", "is 0, must be at least 1");
+  if (settings.tolerance && settings.max_records) {
+    diagnostics.Add("settings.maxRecords",
+                    "is given together with a tolerance: one decides where records go, leave the other out");
+  }
+  if (settings.gather == Gather::kReference && settings.samples) {
+    diagnostics.Add("settings.samples",
+                    "does not apply where records gather from the reference, which draws no samples");
+  }
+  if (settings.gather == Gather::kReference && !DirectLightOnly(scene, settings)) {
+    CheckPanels(scene, true, "settings.gather", "from-ray-tracing", diagnostics);
+    if (scene.traits().has_beziers) {
+      diagnostics.Add("settings.gather",
+                      "reference gives no derivatives of light reflected in a scene with Bézier curves: use "
+                      "from-ray-tracing");
+    }
+  }
+  if (settings.target_error) {
+    diagnostics.Add("settings.targetError", "does not apply to irradiance-caching: use tolerance or max records");
+  }
+  if (settings.time_limit) {
+    diagnostics.Add("settings.timeLimit", "does not apply to irradiance-caching: use tolerance or max records");
+  }
+}
+
 void CheckFading(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   if (settings.max_bounces.has_value() || !LightNeverFades(scene)) return;
   diagnostics.Add(
@@ -94,8 +157,6 @@ void CheckFading(const Scene& scene, const Settings& settings, Diagnostics& diag
       "is absent, but every curve reflects all light and some enclose an area, where light never fades: set "
       "it, or give a curve a reflectance below 1");
 }
-
-std::string NameOf(const Settings& settings) { return MethodNames()[static_cast<std::size_t>(*settings.method)]; }
 
 // Of deterministic methods.
 void RefuseSampling(const Settings& settings, Diagnostics& diagnostics) {
@@ -106,24 +167,12 @@ void RefuseSampling(const Settings& settings, Diagnostics& diagnostics) {
 
 void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   RefuseSampling(settings, diagnostics);
-  if (!DirectLightOnly(scene, settings) && !scene.traits().lambertian) {
-    const auto other = std::find_if(scene.curves().begin(), scene.curves().end(), [](const Curve& curve) {
-      return !std::holds_alternative<Lambertian>(curve.material) && !curve.reflectance.IsBlack();
-    });
-    diagnostics.Add("settings.method",
-                    "reference needs a scene that reflects by lambertian materials alone, and curve \"" + other->name +
-                        "\" has another: use path-tracing");
-  }
+  CheckPanels(scene, !DirectLightOnly(scene, settings), "settings.method", "path-tracing", diagnostics);
   if (!DirectLightOnly(scene, settings) && scene.traits().has_beziers &&
       settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone) {
     diagnostics.Add("settings.derivatives",
                     "reference gives none of light reflected in a scene with Bézier curves: leave this out, set max "
                     "bounces to 0, or use ray-tracing");
-  }
-  if (scene.traits().elements > kMostReferencePieces) {
-    diagnostics.Add("settings.method", "reference does scenes of up to " + Text(kMostReferencePieces) +
-                                           " straight and arced pieces, and this one has " +
-                                           Text(scene.traits().elements) + ": use path-tracing");
   }
   CheckFading(scene, settings, diagnostics);
 }
@@ -131,6 +180,7 @@ void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& d
 // Settings that the method would ignore, and scenes that it cannot do.
 void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   CheckDerivatives(scene, settings, diagnostics);
+  CheckCaching(scene, settings, diagnostics);
   if (settings.method != Method::kPathTracing && settings.method != Method::kExact && scene.traits().pixels > 0) {
     diagnostics.Add("settings.method", NameOf(settings) +
                                            " gives irradiance at points, and a probe of this scene is a "
@@ -185,7 +235,19 @@ void FillMethodDefaults(const Scene& scene, Plan& plan) {
     if (!settings.target_error.has_value()) settings.target_error = kReferenceError;
     return;
   }
+  if (settings.method == Method::kIrradianceCaching) {
+    settings.derivatives = Derivatives::kNone;
+    if (!settings.error_control) settings.error_control = ErrorControl::kVisibilityEvents;
+    if (!settings.extrapolation) settings.extrapolation = 2;
+    if (!settings.tolerance && !settings.max_records) settings.tolerance = kDefaultTolerance;
+    if (DirectLightOnly(scene, settings)) return;
+    const SceneTraits& traits = scene.traits();
+    const bool panels = traits.lambertian && !traits.has_beziers && traits.elements <= kMostReferencePieces;
+    if (!settings.gather) settings.gather = panels && !settings.samples ? Gather::kReference : Gather::kRayTracing;
+    if (settings.gather == Gather::kRayTracing && !settings.samples) settings.samples = kDefaultGatherRays;
+  }
   if (!settings.seed.has_value()) settings.seed = 0;
+  if (settings.method == Method::kIrradianceCaching) return;
   const bool open_ended = settings.target_error.has_value() || settings.time_limit.has_value();
   if (settings.method == Method::kRayTracing) {
     if (!settings.derivatives.has_value()) {
@@ -258,6 +320,11 @@ void AddPasses(const Scene& scene, Plan& plan) {
                                : "direct light in closed form";
   } else if (plan.settings.method == Method::kReference) {
     pass.name = "light between panels, refined until its error is small";
+  } else if (plan.settings.method == Method::kIrradianceCaching) {
+    pass.name = "records where points need them, and interpolation between them";
+    const double rays = plan.settings.samples.value_or(0);
+    if (plan.settings.max_records && !plan.Takes(skip::kEmission) && !plan.Takes(skip::kBounces))
+      pass.expected_rays = *plan.settings.max_records * rays * ExpectedTree(scene, plan, rays);
   } else {
     const bool branching = plan.settings.method == Method::kRayTracing;
     pass.name = branching ? "branching rays from the points" : "paths from the points";
@@ -302,6 +369,7 @@ std::string Summary(const Scene& scene, const Plan& plan) {
   }
   if (plan.settings.method == Method::kRayTracing) text = "Ray tracing of " + Bounces(plan);
   if (plan.settings.method == Method::kReference) text = "Reference of " + Bounces(plan);
+  if (plan.settings.method == Method::kIrradianceCaching) text = "Irradiance caching of " + Bounces(plan);
   if (plan.settings.derivatives == Derivatives::kGradient) text += " and its gradient";
   if (plan.settings.derivatives == Derivatives::kHessian) text += " with gradient and Hessian";
   text += " at ";
@@ -311,7 +379,14 @@ std::string Summary(const Scene& scene, const Plan& plan) {
     if (seen > 0) text += (others > 0 ? " and " : "") + std::to_string(seen) + " pixels of cameras";
   }
   if (pixels > 0) text += (points > 0 ? " and in " : "") + std::to_string(pixels) + " pixels";
-  if (plan.settings.method != Method::kExact) {
+  if (plan.settings.method == Method::kIrradianceCaching) {
+    text +=
+        plan.settings.max_records
+            ? ", from " + Text(*plan.settings.max_records) + (*plan.settings.max_records == 1 ? " record" : " records")
+            : ", from as many records as keep the estimated error below " + Text(100 * *plan.settings.tolerance) + " %";
+    if (plan.settings.samples && !plan.Takes(skip::kBounces))
+      text += ", " + Text(*plan.settings.samples) + " branching rays each";
+  } else if (plan.settings.method != Method::kExact) {
     const bool branching = plan.settings.method == Method::kRayTracing;
     if (plan.settings.samples.has_value()) {
       text += ", at most " + Text(plan.passes[0].samples) + (branching ? " branching rays each" : " paths each");
@@ -329,7 +404,8 @@ std::string Summary(const Scene& scene, const Plan& plan) {
 }  // namespace
 
 const std::vector<std::string>& MethodNames() {
-  static const auto& names = *new std::vector<std::string>{"exact", "path-tracing", "ray-tracing", "reference"};
+  static const auto& names =
+      *new std::vector<std::string>{"exact", "path-tracing", "ray-tracing", "reference", "irradiance-caching"};
   return names;
 }
 

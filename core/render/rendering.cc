@@ -6,6 +6,7 @@
 #include "core/render/exact_picture_rendering.h"
 #include "core/render/exact_rendering.h"
 #include "core/render/fluence_rendering.h"
+#include "core/render/irradiance_caching_rendering.h"
 #include "core/render/joint_rendering.h"
 #include "core/render/path_tracing_rendering.h"
 #include "core/render/ray_tracing_rendering.h"
@@ -28,6 +29,9 @@ std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, co
   }
   if (plan.settings.method == Method::kRayTracing) {
     return std::make_unique<RayTracingRendering>(std::move(scene), std::move(caster), plan);
+  }
+  if (plan.settings.method == Method::kIrradianceCaching) {
+    return std::make_unique<IrradianceCachingRendering>(std::move(scene), std::move(caster), plan);
   }
   if (plan.settings.method == Method::kReference) {
     return std::make_unique<ReferenceRendering>(std::move(scene), caster, plan);

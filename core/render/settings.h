@@ -7,14 +7,19 @@
 #include <string>
 #include <vector>
 
+#include "core/cache/error_control.h"
+
 namespace flatlight {
 
-enum class Method : std::uint8_t { kExact, kPathTracing, kRayTracing, kReference };
+enum class Method : std::uint8_t { kExact, kPathTracing, kRayTracing, kReference, kIrradianceCaching };
 enum class Derivatives : std::uint8_t { kNone, kGradient, kHessian };
 
 // What the caller asks for; absent means the method's default. See settings.proto for units and ranges.
 // How ray tracing finds derivatives.
 enum class Formulation : std::uint8_t { kStratified, kPolyline, kArcLength };
+
+// Where irradiance caching finds what is reflected.
+enum class Gather : std::uint8_t { kReference, kRayTracing };
 
 struct Settings {
   std::optional<Method> method;
@@ -26,6 +31,12 @@ struct Settings {
   std::optional<double> target_error;
   std::optional<double> time_limit;  // s
   std::optional<std::uint32_t> threads;
+  // Of irradiance caching.
+  std::optional<ErrorControl> error_control;
+  std::optional<std::uint32_t> extrapolation;  // Degree, 0 to 2.
+  std::optional<double> tolerance;             // Relative error.
+  std::optional<std::uint32_t> max_records;
+  std::optional<Gather> gather;
   std::vector<std::string> no_skip;
 };
 

@@ -92,7 +92,8 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
                 traits.emitting_curves > 0 ? Counted(traits.emitting_curves, "curve emits", "curves emit")
                 : traits.lights > 0        ? Counted(traits.lights, "light shines", "lights shine")
                                            : "the environment shines");
-  const bool branching = settings.method == Method::kRayTracing;
+  const bool caching = settings.method == Method::kIrradianceCaching;
+  const bool branching = settings.method == Method::kRayTracing || caching;
   decisions.Add(skip::kColour, traits.grey && !branching, "all spectra are grey: one channel is computed",
                 branching ? "branching rays carry all channels at once" : "some spectra are coloured");
   if (settings.method == Method::kReference) {
@@ -124,7 +125,9 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
     AddBounces(scene, settings, ways, decisions);
     AddBlackPaths(scene, direct, decisions);
     decisions.Add(skip::kUnseenEmitters, false, "", reason);
-    decisions.Add(skip::kConvergedPoints, false, "", "a point that has met the target error is done");
+    decisions.Add(
+        skip::kConvergedPoints, false, "",
+        caching ? "records are made where points need them" : "a point that has met the target error is done");
     return decisions.Take();
   }
   if (traits.probe_points == 0 && traits.pixels > 0) {

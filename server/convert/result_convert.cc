@@ -69,6 +69,7 @@ void FillProbeValues(const Field& field, int channels, std::size_t probe, std::s
   AddSlice(source.irradiance, first, count, width, *out.mutable_irradiance());
   AddSlice(source.standard_error, first, count, width, *out.mutable_standard_error());
   AddSlice(source.irradiance_error, first, count, width, *out.mutable_irradiance_error());
+  AddSlice(source.estimated_error, first, count, width, *out.mutable_estimated_error());
   AddSlice(source.gradient, first, count, width, *out.mutable_gradient());
   AddSlice(source.gradient_error, first, count, width, *out.mutable_gradient_error());
   AddSlice(source.hessian, first, count, width, *out.mutable_hessian());
@@ -88,6 +89,22 @@ v1::RenderResult ResultToProto(const SceneOutline& scene, const Field& field) {
     v1::ProbeResult& out = *result.add_probes();
     FillProbeGeometry(scene, probe, 0, count, out);
     FillProbeValues(field, scene.channels, probe, 0, count, out);
+  }
+  if (!field.records.empty()) result.mutable_statistics()->set_records(static_cast<double>(field.records.size()));
+  for (const RecordField& record : field.records) {
+    v1::CacheRecord& out = *result.add_records();
+    out.add_position(record.position.x), out.add_position(record.position.y);
+    out.add_normal(record.normal.x), out.add_normal(record.normal.y);
+    out.set_curve(record.curve);
+    if (!record.curve.empty()) {
+      out.set_side(record.side == Side::kFront ? v1::CacheRecord::FRONT : v1::CacheRecord::BACK);
+    }
+    out.mutable_irradiance()->Add(record.irradiance.begin(), record.irradiance.end());
+    out.mutable_gradient()->Add(record.gradient.begin(), record.gradient.end());
+    out.mutable_hessian()->Add(record.hessian.begin(), record.hessian.end());
+    out.add_radius(record.left_radius), out.add_radius(record.right_radius);
+    out.set_bounce(0);
+    out.set_wave(record.wave);
   }
   result.mutable_statistics()->set_rays(field.rays);
   if (field.error_bound) result.mutable_statistics()->set_error_bound(*field.error_bound);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/convert/settings_convert.h"
 
+#include <optional>
+
 #include "server/convert/unknown_fields.h"
 
 namespace flatlight {
@@ -16,6 +18,8 @@ v1::Settings::Method ToProto(Method method) {
       return v1::Settings::RAY_TRACING;
     case Method::kReference:
       return v1::Settings::REFERENCE;
+    case Method::kIrradianceCaching:
+      return v1::Settings::IRRADIANCE_CACHING;
   }
   return v1::Settings::METHOD_UNSPECIFIED;
 }
@@ -30,6 +34,44 @@ v1::Settings::Formulation ToProto(Formulation formulation) {
       return v1::Settings::ARC_LENGTH;
   }
   return v1::Settings::FORMULATION_UNSPECIFIED;
+}
+
+v1::Settings::ErrorControl ToProto(ErrorControl control) {
+  switch (control) {
+    case ErrorControl::kSplitSphere:
+      return v1::Settings::SPLIT_SPHERE;
+    case ErrorControl::kBoundedSplitSphere:
+      return v1::Settings::BOUNDED_SPLIT_SPHERE;
+    case ErrorControl::kRadiometricHessian:
+      return v1::Settings::RADIOMETRIC_HESSIAN;
+    case ErrorControl::kGeometricHessian:
+      return v1::Settings::GEOMETRIC_HESSIAN;
+    case ErrorControl::kOcclusionHessian:
+      return v1::Settings::OCCLUSION_HESSIAN;
+    case ErrorControl::kVisibilityEvents:
+      return v1::Settings::VISIBILITY_EVENTS;
+  }
+  return v1::Settings::ERROR_CONTROL_UNSPECIFIED;
+}
+
+v1::Settings::Gather ToProto(Gather gather) {
+  switch (gather) {
+    case Gather::kReference:
+      return v1::Settings::FROM_REFERENCE;
+    case Gather::kRayTracing:
+      return v1::Settings::FROM_RAY_TRACING;
+  }
+  return v1::Settings::GATHER_UNSPECIFIED;
+}
+
+// Absent if it names none that is known here.
+std::optional<ErrorControl> FromProto(v1::Settings::ErrorControl proto) {
+  for (const ErrorControl control :
+       {ErrorControl::kSplitSphere, ErrorControl::kBoundedSplitSphere, ErrorControl::kRadiometricHessian,
+        ErrorControl::kGeometricHessian, ErrorControl::kOcclusionHessian, ErrorControl::kVisibilityEvents}) {
+    if (ToProto(control) == proto) return control;
+  }
+  return std::nullopt;
 }
 
 v1::Settings::Derivatives ToProto(Derivatives derivatives) {
@@ -68,6 +110,13 @@ Settings SettingsFromProto(const v1::Settings& proto, Diagnostics& diagnostics) 
   if (proto.formulation() == v1::Settings::POLYLINE) settings.formulation = Formulation::kPolyline;
   if (proto.formulation() == v1::Settings::ARC_LENGTH) settings.formulation = Formulation::kArcLength;
   if (proto.method() == v1::Settings::REFERENCE) settings.method = Method::kReference;
+  if (proto.method() == v1::Settings::IRRADIANCE_CACHING) settings.method = Method::kIrradianceCaching;
+  if (proto.gather() == v1::Settings::FROM_REFERENCE) settings.gather = Gather::kReference;
+  if (proto.gather() == v1::Settings::FROM_RAY_TRACING) settings.gather = Gather::kRayTracing;
+  settings.error_control = FromProto(proto.error_control());
+  if (proto.has_extrapolation()) settings.extrapolation = proto.extrapolation();
+  if (proto.has_tolerance()) settings.tolerance = proto.tolerance();
+  if (proto.has_max_records()) settings.max_records = proto.max_records();
   if (proto.has_samples()) settings.samples = proto.samples();
   if (proto.has_max_bounces()) settings.max_bounces = proto.max_bounces();
   if (proto.has_seed()) settings.seed = proto.seed();
@@ -92,6 +141,11 @@ v1::Settings SettingsToProto(const Settings& settings) {
   if (settings.target_error) proto.set_target_error(*settings.target_error);
   if (settings.time_limit) proto.set_time_limit(*settings.time_limit);
   if (settings.threads) proto.set_threads(*settings.threads);
+  if (settings.error_control) proto.set_error_control(ToProto(*settings.error_control));
+  if (settings.gather) proto.set_gather(ToProto(*settings.gather));
+  if (settings.extrapolation) proto.set_extrapolation(*settings.extrapolation);
+  if (settings.tolerance) proto.set_tolerance(*settings.tolerance);
+  if (settings.max_records) proto.set_max_records(*settings.max_records);
   for (const std::string& name : settings.no_skip) proto.add_no_skip(name);
   return proto;
 }

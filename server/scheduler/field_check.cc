@@ -27,6 +27,7 @@ constexpr Quantity kQuantities[] = {
     {"rotation_gradient_error", &ProbeField::rotation_gradient_error},
     {"samples", &ProbeField::samples},
     {"irradiance_error", &ProbeField::irradiance_error},
+    {"estimated_error", &ProbeField::estimated_error},
 };
 
 absl::Status NotFinite(const std::string& what, double value) {

@@ -17,10 +17,10 @@ constexpr std::size_t kMaxKeptMessages = 32;
 constexpr std::size_t kHeadBytes = 16u << 10;
 constexpr std::size_t kFrameBytes = 128;
 
-// Upper bound of a point's bytes in a message: 7 arrays of values, 5 numbers of geometry.
+// Upper bound of a point's bytes in a message: 9 arrays of values, 5 numbers of geometry.
 std::size_t BytesPerPoint(const SceneOutline& scene, bool with_values, bool with_geometry) {
   const auto channels = static_cast<std::size_t>(scene.channels);
-  return sizeof(double) * ((with_values ? 6 * channels + 1 : 0) + (with_geometry ? 5 : 0));
+  return sizeof(double) * ((with_values ? 8 * channels + 1 : 0) + (with_geometry ? 5 : 0));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "client/cli/commands/result_text.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "client/cli/text/numbers.h"
@@ -24,8 +25,27 @@ std::string RangeText(const v1::ProbeResult& probe) {
          (probe.quantity() == v1::ProbeResult::RADIANCE ? " W/(rad m)" : " W/m");
 }
 
+// Largest error / max(irradiance, 1 % of the probe's mean), as target_error has it; absent if there are none.
+std::optional<double> LargestRelativeError(const v1::ProbeResult& probe,
+                                           const google::protobuf::RepeatedField<double>& errors) {
+  if (errors.empty()) return std::nullopt;
+  const int channels = static_cast<int>(probe.channels());
+  std::vector<double> mean(probe.channels());
+  for (int i = 0; i < probe.irradiance_size(); ++i)
+    mean[static_cast<std::size_t>(i % channels)] += probe.irradiance(i) / probe.count();
+  double largest = 0;
+  for (int i = 0; i < errors.size(); ++i) {
+    const double scale = std::max(probe.irradiance(i), kDark * mean[static_cast<std::size_t>(i % channels)]);
+    if (errors[i] > 0) largest = std::max(largest, errors[i] / scale);
+  }
+  return largest;
+}
+
 std::string ErrorText(const v1::RenderResult& result, const v1::ProbeResult& probe) {
-  if (const auto error = LargestRelativeError(probe)) return "largest relative standard error " + FormatPercent(*error);
+  if (const auto error = LargestRelativeError(probe, probe.standard_error()))
+    return "largest relative standard error " + FormatPercent(*error);
+  if (const auto error = LargestRelativeError(probe, probe.estimated_error()))
+    return "largest estimated relative error " + FormatPercent(*error);
   if (result.statistics().has_error_bound())
     return "error at most " + FormatValue(result.statistics().error_bound(), 2) + " W/m";
   return "";
@@ -50,20 +70,6 @@ std::string EndText(v1::EndReason reason) {
 
 }  // namespace
 
-std::optional<double> LargestRelativeError(const v1::ProbeResult& probe) {
-  if (probe.standard_error().empty()) return std::nullopt;
-  const int channels = static_cast<int>(probe.channels());
-  std::vector<double> mean(probe.channels());
-  for (int i = 0; i < probe.irradiance_size(); ++i)
-    mean[static_cast<std::size_t>(i % channels)] += probe.irradiance(i) / probe.count();
-  double largest = 0;
-  for (int i = 0; i < probe.standard_error_size(); ++i) {
-    const double scale = std::max(probe.irradiance(i), kDark * mean[static_cast<std::size_t>(i % channels)]);
-    if (probe.standard_error(i) > 0) largest = std::max(largest, probe.standard_error(i) / scale);
-  }
-  return largest;
-}
-
 std::string ResultText(const v1::RenderResult& result) {
   std::vector<std::vector<std::string>> rows;
   for (const v1::ProbeResult& probe : result.probes())
@@ -72,6 +78,7 @@ std::string ResultText(const v1::RenderResult& result) {
   std::string text = FormatTable(rows);
   text += EndText(result.end_reason()) + " in " + FormatSeconds(statistics.wall_seconds());
   if (statistics.has_cpu_seconds()) text += " (" + FormatSeconds(statistics.cpu_seconds()) + " of processor time)";
+  if (statistics.has_records()) text += ", " + FormatCount(statistics.records()) + " records";
   if (statistics.rays() > 0) text += ", " + FormatCount(statistics.rays()) + " rays";
   return text + '\n';
 }

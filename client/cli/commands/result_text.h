@@ -2,7 +2,6 @@
 #ifndef FLATLIGHT_CLIENT_CLI_COMMANDS_RESULT_TEXT_H_
 #define FLATLIGHT_CLIENT_CLI_COMMANDS_RESULT_TEXT_H_
 
-#include <optional>
 #include <string>
 
 #include "flatlight/v1/result.pb.h"
@@ -11,9 +10,6 @@ namespace flatlight {
 
 // After a render: range of irradiance and largest error of each probe, rays, time, and why it ended.
 std::string ResultText(const v1::RenderResult& result);
-
-// Largest standard error / max(irradiance, 1 % of the probe's mean), as target_error has it; absent if deterministic.
-std::optional<double> LargestRelativeError(const v1::ProbeResult& probe);
 
 }  // namespace flatlight
 

@@ -49,6 +49,7 @@ Stated ErrorOf(const v1::RenderResult& result, const v1::ProbeResult& probe, con
   const bool estimated = !probe.standard_error().empty();
   if (estimated) return {values.error->empty() ? 0 : (*values.error)[i], 0};
   if (irradiance && !probe.irradiance_error().empty()) return {0, probe.irradiance_error(i)};
+  if (irradiance && !probe.estimated_error().empty()) return {0, probe.estimated_error(i)};
   if (irradiance) return {0, result.statistics().error_bound()};
   return {0, values.error->empty() ? 0 : (*values.error)[i]};
 }

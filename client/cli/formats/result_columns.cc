@@ -16,6 +16,7 @@ const std::vector<ResultColumn>& AllResultColumns() {
       {"irradiance", [](const Probe& p) -> const DoubleArray& { return p.irradiance(); }, 0, 0},
       {"standardError", [](const Probe& p) -> const DoubleArray& { return p.standard_error(); }, 0, 0},
       {"irradianceError", [](const Probe& p) -> const DoubleArray& { return p.irradiance_error(); }, 0, 0},
+      {"estimatedError", [](const Probe& p) -> const DoubleArray& { return p.estimated_error(); }, 0, 0},
       {"gradient", [](const Probe& p) -> const DoubleArray& { return p.gradient(); }, 0, 0},
       {"gradientError", [](const Probe& p) -> const DoubleArray& { return p.gradient_error(); }, 0, 0},
       {"hessian", [](const Probe& p) -> const DoubleArray& { return p.hessian(); }, 0, 0},

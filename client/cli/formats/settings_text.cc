@@ -17,6 +17,12 @@ std::string SettingsText(const v1::Settings& settings) {
   if (settings.has_max_bounces()) add("max-bounces", std::to_string(settings.max_bounces()));
   if (settings.has_seed()) add("seed", std::to_string(settings.seed()));
   if (settings.derivatives() != 0) add("derivatives", OptionName(settings.derivatives()));
+  if (settings.formulation() != 0) add("formulation", OptionName(settings.formulation()));
+  if (settings.error_control() != 0) add("error-control", OptionName(settings.error_control()));
+  if (settings.gather() != 0) add("gather", OptionName(settings.gather()));
+  if (settings.has_extrapolation()) add("extrapolation", std::to_string(settings.extrapolation()));
+  if (settings.has_tolerance()) add("tolerance", FormatExactly(settings.tolerance()));
+  if (settings.has_max_records()) add("max-records", std::to_string(settings.max_records()));
   if (settings.has_target_error()) add("target-error", FormatExactly(settings.target_error()));
   if (settings.has_time_limit()) add("time-limit", FormatExactly(settings.time_limit()));
   if (settings.has_threads()) add("threads", std::to_string(settings.threads()));

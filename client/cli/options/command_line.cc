@@ -66,6 +66,21 @@ void AddFormulation(CLI::App& app, SettingsOptions& settings) {
       ->type_name("NAME");
 }
 
+void AddCaching(CLI::App& app, SettingsOptions& settings) {
+  app.add_option("--error-control", settings.error_control,
+                 "of irradiance-caching: split-sphere, bounded-split-sphere, radiometric-hessian, geometric-hessian, "
+                 "occlusion-hessian or visibility-events (default)")
+      ->type_name("NAME");
+  app.add_option("--gather", settings.gather,
+                 "what is reflected: from-reference (default where it can) or from-ray-tracing")
+      ->type_name("NAME");
+  app.add_option("--extrapolation", settings.extrapolation, "degree from a record, 0 to 2 (default 2)")->type_name("N");
+  app.add_option("--tolerance", settings.tolerance, "estimated relative error of irradiance-caching (default 0.01)")
+      ->type_name("E");
+  app.add_option("--max-records", settings.max_records, "in place of a tolerance: so many, where they help most")
+      ->type_name("N");
+}
+
 void AddThreadsAndSkips(CLI::App& app, SettingsOptions& settings) {
   app.add_option("--threads", settings.threads, "at most so many (default: all the server's)")->type_name("N");
   app.add_option("--no-skip", settings.no_skip, "do work that could be left out, see explain; may be repeated")
@@ -75,14 +90,17 @@ void AddThreadsAndSkips(CLI::App& app, SettingsOptions& settings) {
 
 void AddSettings(CLI::App& app, Raw& raw) {
   SettingsOptions& settings = raw.settings;
-  app.add_option("--method", settings.method, "exact (direct light), path-tracing, ray-tracing or reference")
+  app.add_option("--method", settings.method,
+                 "exact (direct light), path-tracing, ray-tracing, reference or irradiance-caching")
       ->type_name("NAME");
-  app.add_option("--samples", settings.samples, "paths a point (default 1024; first rays of ray-tracing: 256)")
+  app.add_option("--samples", settings.samples,
+                 "paths a point (default 1024), first rays a point of ray-tracing (256) or a record (1024)")
       ->type_name("N");
   AddBounces(app, settings);
   app.add_option("--seed", settings.seed, "another seed, an independent result (default 0)")->type_name("N");
   AddDerivatives(app, settings);
   AddFormulation(app, settings);
+  AddCaching(app, settings);
   app.add_option("--target-error", settings.target_error, "stop at this relative standard error, in (0, 1]")
       ->type_name("E");
   app.add_option("--time-limit", settings.time_limit, "stop after so many seconds")->type_name("S");

@@ -99,6 +99,11 @@ absl::StatusOr<v1::Settings> ParseSettings(const SettingsOptions& options) {
       SetCount("--seed", options.seed, 0, settings, &Settings::set_seed),
       SetChoice("--derivatives", options.derivatives, settings, &Settings::set_derivatives),
       SetChoice("--formulation", options.formulation, settings, &Settings::set_formulation),
+      SetChoice("--error-control", options.error_control, settings, &Settings::set_error_control),
+      SetChoice("--gather", options.gather, settings, &Settings::set_gather),
+      SetCount("--extrapolation", options.extrapolation, 0, settings, &Settings::set_extrapolation),
+      SetNumber("--tolerance", options.tolerance, 1, settings, &Settings::set_tolerance),
+      SetCount("--max-records", options.max_records, 1, settings, &Settings::set_max_records),
       SetNumber("--target-error", options.target_error, 1, settings, &Settings::set_target_error),
       SetNumber("--time-limit", options.time_limit, kAny, settings, &Settings::set_time_limit),
       SetCount("--threads", options.threads, 1, settings, &Settings::set_threads)};

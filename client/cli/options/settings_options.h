@@ -16,7 +16,7 @@ namespace flatlight {
 // As written on the command line.
 struct SettingsOptions {
   std::optional<std::string> method, samples, max_bounces, seed, derivatives, formulation, target_error, time_limit,
-      threads;
+      threads, error_control, gather, extrapolation, tolerance, max_records;
   std::vector<std::string> no_skip;
 };
 

@@ -61,10 +61,13 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
       tolerance_(std::clamp(kTolerance * options.target_error, kLeastTolerance, kTolerance)),
       lights_(*caster_, {.derivatives = options.derivatives}) {
   for (std::size_t p = 0; p < scene_->probes().size(); ++p) {
-    for (const Receiver& receiver : scene_->probes()[p].receivers) {
-      points_.push_back(&receiver);
+    const std::vector<Receiver>& receivers = scene_->probes()[p].receivers;
+    const std::size_t count = std::min(receivers.size(), options_.most_points);
+    for (std::size_t i = 0; i < count; ++i) {
+      points_.push_back(&receivers[(2 * i + 1) * receivers.size() / (2 * count)]);
       probe_of_point_.push_back(p);
     }
+    points_of_probe_.push_back(static_cast<double>(count));
   }
   direct_.resize(points_.size());
   const Scene& world = caster_->scene();
@@ -232,8 +235,7 @@ void ReferenceSolver::EndPoints() {
   std::vector<Spectrum> means(scene_->probes().size());
   for (std::size_t i = 0; i < points_.size(); ++i) {
     Spectrum& mean = means[probe_of_point_[i]];
-    const auto count = static_cast<double>(scene_->probes()[probe_of_point_[i]].receivers.size());
-    mean = mean + (1 / count) * coming_[i].irradiance;
+    mean = mean + (1 / points_of_probe_[probe_of_point_[i]]) * coming_[i].irradiance;
   }
   const double before = relative_error_;
   relative_error_ = 0;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,6 +26,8 @@ struct ReferenceOptions {
   std::optional<std::uint32_t> max_bounces;
   // Refines until the bound on every point's error is at most so many times max(irradiance, 1 % of its probe's mean).
   double target_error = 1e-6;
+  // Of a probe, spread evenly: the bounds of so many points count, and these have values.
+  std::size_t most_points = std::numeric_limits<std::size_t>::max();
 };
 
 // Light of all bounces at the points of a scene's probes: direct light in closed form, what curves reflect from panels
@@ -53,6 +56,9 @@ class ReferenceSolver {
   double first_relative_error() const { return first_relative_error_; }
   int rounds() const { return rounds_; }
   std::size_t panels() const { return radiosity_->mesh().size(); }
+  // The panels, and what they reflect, after the last round. Only when the work is done.
+  const PanelMesh& mesh() const { return radiosity_->mesh(); }
+  const PanelLight& light() const { return radiosity_->light(); }
 
  private:
   struct Worker;
@@ -82,6 +88,7 @@ class ReferenceSolver {
   LightSolver lights_;
   std::vector<const Receiver*> points_;
   std::vector<std::size_t> probe_of_point_;
+  std::vector<double> points_of_probe_;
   std::vector<ExactValue> direct_;  // By point.
 
   std::unique_ptr<Radiosity> radiosity_;

@@ -89,7 +89,7 @@ TEST(ResultConvertTest, WhatTheFieldLacksIsAbsent) {
 
 TEST(ResultConvertTest, EveryArrayReachesItsOwnField) {
   Field field;
-  field.probes.push_back({{1}, {2}, {3}, {4}, {5}, {6}, {9}, {10}, {7}, {8}});
+  field.probes.push_back({{1}, {2}, {3}, {4}, {5}, {6}, {9}, {10}, {7}, {8}, {11}});
   v1::ProbeResult out;
   FillProbeValues(field, 1, 0, 0, 1, out);
   EXPECT_THAT(out.irradiance(), ElementsAre(1));
@@ -102,6 +102,7 @@ TEST(ResultConvertTest, EveryArrayReachesItsOwnField) {
   EXPECT_THAT(out.irradiance_error(), ElementsAre(8));
   EXPECT_THAT(out.rotation_gradient(), ElementsAre(9));
   EXPECT_THAT(out.rotation_gradient_error(), ElementsAre(10));
+  EXPECT_THAT(out.estimated_error(), ElementsAre(11));
 }
 
 TEST(ResultConvertTest, AResultHasAllProbes) {

@@ -27,6 +27,11 @@ v1::Settings EverySetting() {
   proto.set_target_error(0.01);
   proto.set_time_limit(2.5);
   proto.set_threads(3);
+  proto.set_error_control(v1::Settings::OCCLUSION_HESSIAN);
+  proto.set_gather(v1::Settings::FROM_RAY_TRACING);
+  proto.set_extrapolation(0);
+  proto.set_tolerance(0.03);
+  proto.set_max_records(12);
   proto.add_no_skip("colour");
   proto.add_no_skip("visibility");
   return proto;
@@ -45,6 +50,11 @@ TEST(SettingsConvertTest, EverySettingComesBack) {
   EXPECT_EQ(settings.target_error, 0.01);
   EXPECT_EQ(settings.time_limit, 2.5);
   EXPECT_EQ(settings.threads, 3U);
+  EXPECT_EQ(settings.error_control, ErrorControl::kOcclusionHessian);
+  EXPECT_EQ(settings.gather, Gather::kRayTracing);
+  EXPECT_EQ(settings.extrapolation, 0U);
+  EXPECT_EQ(settings.tolerance, 0.03);
+  EXPECT_EQ(settings.max_records, 12U);
   EXPECT_THAT(settings.no_skip, ElementsAre("colour", "visibility"));
   EXPECT_TRUE(MessageDifferencer::Equals(SettingsToProto(settings), EverySetting()));
 }
@@ -62,13 +72,14 @@ TEST(SettingsConvertTest, WhatIsAbsentStaysAbsent) {
   const Settings settings = SettingsFromProto(v1::Settings(), diagnostics);
   EXPECT_TRUE(diagnostics.empty());
   EXPECT_FALSE(settings.method || settings.samples || settings.max_bounces || settings.seed || settings.derivatives ||
-               settings.target_error || settings.time_limit || settings.threads);
+               settings.target_error || settings.time_limit || settings.threads || settings.error_control ||
+               settings.gather || settings.extrapolation || settings.tolerance || settings.max_records);
   EXPECT_TRUE(MessageDifferencer::Equals(SettingsToProto(settings), v1::Settings()));
 }
 
 TEST(SettingsConvertTest, EveryMethodAndEveryOrderOfDerivativesComesBack) {
-  for (const auto method :
-       {v1::Settings::EXACT, v1::Settings::PATH_TRACING, v1::Settings::RAY_TRACING, v1::Settings::REFERENCE}) {
+  for (const auto method : {v1::Settings::EXACT, v1::Settings::PATH_TRACING, v1::Settings::RAY_TRACING,
+                            v1::Settings::REFERENCE, v1::Settings::IRRADIANCE_CACHING}) {
     for (const auto derivatives : {v1::Settings::NONE, v1::Settings::GRADIENT, v1::Settings::HESSIAN}) {
       v1::Settings proto;
       proto.set_method(method);
@@ -76,6 +87,18 @@ TEST(SettingsConvertTest, EveryMethodAndEveryOrderOfDerivativesComesBack) {
       Diagnostics diagnostics;
       EXPECT_TRUE(MessageDifferencer::Equals(SettingsToProto(SettingsFromProto(proto, diagnostics)), proto));
       EXPECT_TRUE(diagnostics.empty());
+    }
+  }
+}
+
+TEST(SettingsConvertTest, EveryErrorControlAndEveryGatherComesBack) {
+  for (int control = v1::Settings::SPLIT_SPHERE; control <= v1::Settings::ErrorControl_MAX; ++control) {
+    for (const auto gather : {v1::Settings::FROM_REFERENCE, v1::Settings::FROM_RAY_TRACING}) {
+      v1::Settings proto;
+      proto.set_error_control(static_cast<v1::Settings::ErrorControl>(control));
+      proto.set_gather(gather);
+      Diagnostics diagnostics;
+      EXPECT_TRUE(MessageDifferencer::Equals(SettingsToProto(SettingsFromProto(proto, diagnostics)), proto));
     }
   }
 }

@@ -117,6 +117,14 @@ TEST(CommandLine, AllOfRender) {
   EXPECT_EQ(settings.seed(), 7U);
   EXPECT_EQ(settings.derivatives(), v1::Settings::NONE);
   EXPECT_EQ(Parse({"render", "a", "--formulation", "arc-length"})->settings.formulation(), v1::Settings::ARC_LENGTH);
+  const v1::Settings caching = Parse({"render", "a", "--error-control", "split-sphere", "--gather", "from-ray-tracing",
+                                      "--extrapolation", "0", "--tolerance", "0.5", "--max-records", "3"})
+                                   ->settings;
+  EXPECT_EQ(caching.error_control(), v1::Settings::SPLIT_SPHERE);
+  EXPECT_EQ(caching.gather(), v1::Settings::FROM_RAY_TRACING);
+  EXPECT_TRUE(caching.has_extrapolation());
+  EXPECT_EQ(caching.tolerance(), 0.5);
+  EXPECT_EQ(caching.max_records(), 3u);
   EXPECT_EQ(settings.target_error(), 0.01);
   EXPECT_EQ(settings.time_limit(), 1000);
   EXPECT_EQ(settings.threads(), 2U);
@@ -176,7 +184,7 @@ TEST(CommandLine, MistakesAreNamed) {
   EXPECT_THAT(ErrorOf({"jobs", "--server", ""}), HasSubstr("--server"));
   EXPECT_EQ(ErrorOf({"compare", "a", "b", "--tolerance", "-1"}), "--tolerance: '-1'; must be a number from 0");
   EXPECT_EQ(ErrorOf({"render", "a", "--method", "magic"}),
-            "--method: 'magic'; must be one of exact, path-tracing, ray-tracing, reference");
+            "--method: 'magic'; must be one of exact, path-tracing, ray-tracing, reference, irradiance-caching");
   EXPECT_EQ(ErrorOf({"render", "a", "--samples", "0", "--threads", "x"}),
             "--samples: '0'; must be a whole number from 1 to 4294967295\n"
             "--threads: 'x'; must be a whole number from 1 to 4294967295");

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where records are made: in waves, each of which knows the records of those before.
+#ifndef FLATLIGHT_CORE_CACHE_PLACEMENT_H_
+#define FLATLIGHT_CORE_CACHE_PLACEMENT_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/cache/error_control.h"
+#include "core/cache/record.h"
+
+namespace flatlight {
+
+struct PlacementOptions {
+  ErrorControl control = ErrorControl::kVisibilityEvents;
+  std::size_t degree = 2;   // Of extrapolation.
+  double tolerance = 0.01;  // The largest estimated relative error at a point,
+  // or as little as this number of records can do; at least one a track.
+  std::optional<std::size_t> most_records = {};
+};
+
+struct RecordPlace {
+  std::uint32_t track = 0;
+  double at = 0;
+};
+
+// A track is a stretch along which irradiance is smooth but for visibility events: one side of a straight or smoothly
+// bent piece of a curve. Records count on their own track alone, so that nothing leaks through walls or around corners.
+// Places are a function of the points and the records, never of who made them when.
+class Placement {
+ public:
+  // `points`: by track, where irradiance is wanted, in order of the coordinate along the track; none empty.
+  Placement(std::vector<std::vector<double>> points, const PlacementOptions& options);
+
+  // The next wave; empty when the records do. Sets the errors of all records.
+  std::vector<RecordPlace> Next(std::vector<CacheRecord>& records) const;
+  // Sets footprints, when no wave is left: they cover every point.
+  void SetFootprints(std::vector<CacheRecord>& records) const;
+
+ private:
+  std::vector<RecordPlace> First() const;
+  // By track, in order.
+  std::vector<std::vector<CacheRecord*>> Sorted(std::vector<CacheRecord>& records) const;
+  double Extent(std::size_t track) const { return points_[track].back() - points_[track].front(); }
+
+  std::vector<std::vector<double>> points_;
+  PlacementOptions options_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_CACHE_PLACEMENT_H_

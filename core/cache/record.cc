@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/cache/record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "core/math/check.h"
+
+namespace flatlight {
+namespace {
+
+using Event = std::span<const VisibilityEvent>::iterator;
+
+// The first one to the right of a place.
+Event Beyond(std::span<const VisibilityEvent> events, double place) {
+  return std::upper_bound(events.begin(), events.end(), place,
+                          [](double at, const VisibilityEvent& event) { return at < event.at; });
+}
+
+double Size(const Spectrum& s) { return std::max({std::abs(s[0]), std::abs(s[1]), std::abs(s[2])}); }
+
+// By how much what jumped moves irradiance at a distance from there.
+double JumpAt(const VisibilityEvent& event, double distance) {
+  return Size(event.jump[0]) + distance * (Size(event.jump[1]) + 0.5 * distance * Size(event.jump[2]));
+}
+
+}  // namespace
+
+double CacheRecord::EventToLeft() const {
+  const Event next = Beyond(events, at);
+  return next == events.begin() ? std::numeric_limits<double>::infinity() : at - std::prev(next)->at;
+}
+
+double CacheRecord::EventToRight() const {
+  const Event next = Beyond(events, at);
+  return next == events.end() ? std::numeric_limits<double>::infinity() : next->at - at;
+}
+
+double CacheRecord::SmoothError(double distance) const {
+  double error = 0;
+  for (std::size_t k = kRecordOrders; k-- > 0;) error = error * distance + growth[k];
+  return error;
+}
+
+double CacheRecord::ErrorAt(double place) const {
+  const double smooth = SmoothError(std::abs(place - at));
+  double jumps = 0;
+  const Event here = Beyond(events, at), there = Beyond(events, place);
+  for (Event event = std::min(here, there); event != std::max(here, there); ++event)
+    jumps += JumpAt(*event, std::abs(place - event->at)) + unknown_jump * std::abs(place - event->at);
+  // Where there is no light nothing is known of how much there could be.
+  return jumps == 0 ? smooth : scale > 0 ? smooth + jumps / scale : std::numeric_limits<double>::infinity();
+}
+
+double CacheRecord::CostAt(double place) const {
+  const double error = ErrorAt(place);
+  if (!(least > 0)) return error;
+  return error * scale / std::max(Extrapolate(*this, place, degree).Max(), least);
+}
+
+Spectrum Extrapolate(const CacheRecord& record, double place, std::size_t degree) {
+  FLATLIGHT_DCHECK(degree < record.known);
+  const double distance = place - record.at;
+  Spectrum sum = record.derivative[degree];
+  for (std::size_t k = degree; k-- > 0;) sum = record.derivative[k] + (distance / static_cast<double>(k + 1)) * sum;
+  return sum;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// A place at which irradiance and its derivatives are known, to be extrapolated from.
+#ifndef FLATLIGHT_CORE_CACHE_RECORD_H_
+#define FLATLIGHT_CORE_CACHE_RECORD_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/scene/spectrum.h"
+
+namespace flatlight {
+
+inline constexpr std::size_t kRecordOrders = 5;
+
+// A place on a track at which what is seen changes, and with it irradiance or one of its derivatives.
+struct VisibilityEvent {
+  double at = 0;
+  // By how much irradiance and its first two derivatives jump there, to the next larger coordinate.
+  std::array<Spectrum, 3> jump;
+};
+
+// What a record's place sees, for estimates of how fast irradiance changes. Normalised units.
+struct Surroundings {
+  double inverse_distance = 0;  // Its mean over the hemicircle, weighed by the cosine.
+  Spectrum radiometric;         // E'' by the motion of what is seen alone, as if nothing could be covered (J12).
+  // The same for radiance 1/2 everywhere, which makes irradiance 1: what each piece of a curve adds to it, without
+  // signs, for with them it vanishes in closed rooms (THEORY 17 A13).
+  double geometric = 0;
+  double turning = 0;  // Sum of |sin'' theta| over all directions where radiance jumps.
+};
+
+// Coordinates along tracks (see Placement) and all else in normalised units.
+struct CacheRecord {
+  std::uint32_t track = 0;
+  double at = 0;
+  std::uint32_t wave = 0;  // In which it was made.
+  // Irradiance and its derivatives along the track; so many of them are known.
+  std::array<Spectrum, kRecordOrders> derivative;
+  std::size_t known = 1;
+  double noise = 0;  // Of the irradiance: a standard error, or what its sources are off by.
+  // By how much the gradient may jump at any event, beside what the events tell: of light whose jumps are not known.
+  double unknown_jump = 0;
+  Surroundings surroundings;
+  // The events of its track, in order; none if error control does not ask for them. They must outlive this.
+  std::span<const VisibilityEvent> events;
+  // Set by SetErrors: the estimated error of extrapolation over a distance d is the sum of growth[k] d^k, beyond an
+  // event with what jumps there, relative to `scale`.
+  std::array<double, kRecordOrders> growth{};
+  double scale = 0;
+  // If above 0, the error that counts at a place is relative to what is extrapolated there with `degree`, at least
+  // this.
+  double least = 0;
+  std::size_t degree = 0;
+  // The footprint: it counts at distances below these.
+  double left_radius = 0, right_radius = 0;
+
+  double Irradiance() const { return derivative[0].Max(); }
+  // Distances to the nearest events; infinite if there are none. At an event itself its right side counts.
+  double EventToLeft() const;
+  double EventToRight() const;
+  // As if there were no events.
+  double SmoothError(double distance) const;
+  double ErrorAt(double place) const;
+  // The error that counts.
+  double CostAt(double place) const;
+};
+
+// Irradiance at a place on the record's track by the Taylor polynomial of a degree. Requires degree < known.
+Spectrum Extrapolate(const CacheRecord& record, double place, std::size_t degree);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_CACHE_RECORD_H_

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/plane/irradiance_caching/track_events.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace flatlight {
+namespace {
+
+// Of the way between two places, to which an event is found.
+constexpr double kPrecision = 0x1p-40;
+// Events so near to each other count as one.
+constexpr double kTogether = 1e-5;
+constexpr int kMostBetween = 64;
+
+}  // namespace
+
+std::vector<VisibilityEvent> EventsBetween(Skyline& skyline, const Track& track, std::span<const double> places,
+                                           const Cancellation& cancellation) {
+  std::vector<VisibilityEvent> events;
+  const auto look = [&](double at) {
+    skyline.LookFrom(track.At(at));
+    return skyline.Signature();
+  };
+  for (std::size_t i = 1; i < places.size() && !cancellation.cancelled(); ++i) {
+    double from = places[i - 1];
+    const double to = places[i], least = kPrecision * (to - from);
+    if (!(from < to)) continue;
+    std::uint64_t here = look(from);
+    const std::uint64_t there = look(to);
+    for (int count = 0; here != there && from < to && count < kMostBetween; ++count) {
+      double near = from, far = to;
+      while (far - near > least) {
+        const double middle = 0.5 * (near + far);
+        if (!(near < middle && middle < far)) break;
+        (look(middle) == here ? near : far) = middle;
+      }
+      VisibilityEvent event;
+      event.at = far;
+      look(near);
+      const std::array<Spectrum, kRecordOrders> before = skyline.Irradiance();
+      here = look(far);
+      const std::array<Spectrum, kRecordOrders> beyond = skyline.Irradiance();
+      for (std::size_t k = 0; k < event.jump.size(); ++k) event.jump[k] = beyond[k] + -1.0 * before[k];
+      if (!events.empty() && event.at - events.back().at <= kTogether * (to - places[i - 1])) {
+        for (std::size_t k = 0; k < event.jump.size(); ++k)
+          events.back().jump[k] = events.back().jump[k] + event.jump[k];
+      } else {
+        events.push_back(event);
+      }
+      from = far;
+    }
+  }
+  return events;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/render/irradiance_caching_rendering.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "core/cache/interpolation.h"
+#include "core/plane/reference/panel_mesh.h"
+#include "core/render/light_paths.h"
+#include "core/render/skips.h"
+#include "core/render/world_units.h"
+#include "core/sampling/hash.h"
+
+namespace flatlight {
+namespace {
+
+// Between two looks at the clock.
+constexpr std::size_t kRecordsPerThread = 4;
+// What panels may be off by, as a share of the tolerance, at so many points of each probe.
+constexpr double kPanelError = 0.05;
+constexpr std::size_t kPointsOfPanels = 8;
+constexpr std::size_t kStretch = 32;  // Of points that are searched for events.
+
+}  // namespace
+
+IrradianceCachingRendering::IrradianceCachingRendering(std::shared_ptr<const Scene> scene,
+                                                       std::shared_ptr<const RayCaster> caster, const Plan& plan)
+    : scene_(std::move(scene)), caster_(std::move(caster)), max_threads_(plan.MaxThreads()) {
+  const Settings& settings = plan.settings;
+  placement_options_.control = *settings.error_control;
+  placement_options_.degree = *settings.extrapolation;
+  if (settings.tolerance) placement_options_.tolerance = *settings.tolerance;
+  if (plan.Takes(skip::kEmission)) {
+    done_ = true;
+    return;
+  }
+  maker_options_.control = *settings.error_control;
+  maker_options_.key = ChildKey(0, settings.seed.value_or(0));
+  if (!DirectLightOnly(*scene_, settings) && !plan.Takes(skip::kBounces)) {
+    if (settings.gather == Gather::kReference) {
+      ReferenceOptions options;
+      options.derivatives = 0;
+      options.channels = scene_->channels() == 1 ? 1 : kMaxChannels;
+      options.max_bounces = settings.max_bounces;
+      options.target_error = settings.tolerance ? std::clamp(kPanelError * *settings.tolerance, 1e-6, 1e-3) : 1e-5;
+      options.most_points = kPointsOfPanels;
+      panels_.emplace(scene_, caster_, options);
+    } else {
+      maker_options_.rays = *settings.samples;
+      RayTreeOptions options;
+      options.max_bounces = settings.max_bounces;
+      options.end_black_paths = plan.Takes(skip::kBlackPaths);
+      tree_.emplace(caster_, options);
+    }
+  }
+  charts_ = ChartsOf(caster_->scene());
+  tracks_ = TracksOf(*scene_, *caster_);
+  // One on each track is the least there can be.
+  if (settings.max_records) {
+    placement_options_.most_records = std::max(std::size_t{*settings.max_records}, tracks_.tracks.size());
+  }
+  if (!panels_) StartRecords();
+}
+
+void IrradianceCachingRendering::StartRecords() {
+  placement_.emplace(tracks_.points, placement_options_);
+  wave_ = placement_->Next(records_);
+  events_.resize(tracks_.tracks.size());
+  if (maker_options_.control != ErrorControl::kVisibilityEvents) return;
+  for (std::size_t t = 0; t < tracks_.points.size(); ++t) {
+    for (std::size_t first = 0; first + 1 < tracks_.points[t].size(); first += kStretch)
+      stretches_.emplace_back(static_cast<std::uint32_t>(t), first);
+  }
+}
+
+EndReason IrradianceCachingRendering::end_reason() const {
+  return placement_options_.most_records ? EndReason::kSamplesDone : EndReason::kConverged;
+}
+
+std::unique_ptr<RecordMaker> IrradianceCachingRendering::TakeMaker() {
+  {
+    const std::lock_guard lock(makers_mutex_);
+    if (!idle_makers_.empty()) {
+      std::unique_ptr<RecordMaker> maker = std::move(idle_makers_.back());
+      idle_makers_.pop_back();
+      return maker;
+    }
+  }
+  return std::make_unique<RecordMaker>(*caster_, charts_, tree_ ? &*tree_ : nullptr, maker_options_);
+}
+
+void IrradianceCachingRendering::ReturnMaker(std::unique_ptr<RecordMaker> maker) {
+  const std::lock_guard lock(makers_mutex_);
+  idle_makers_.push_back(std::move(maker));
+}
+
+void IrradianceCachingRendering::Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
+                                         Clock::Duration budget) {
+  const Clock::Time start = clock.Now();
+  const int threads = std::max(std::min(max_threads_, executor.threads()), 1);
+  while (!done_ && !cancellation.cancelled()) {
+    if (panels_ && panels_->state() == ReferenceSolver::State::kWorks) {
+      panels_->Advance(executor, threads, cancellation, clock, budget - (clock.Now() - start));
+      if (panels_->state() == ReferenceSolver::State::kWorks) return;
+      maker_options_.reflected = ReflectedLight{&panels_->mesh(), &panels_->light()};
+      maker_options_.reflected_error = panels_->relative_error();
+      StartRecords();
+    } else if (searched_ < stretches_.size()) {
+      FindEvents(executor, threads, cancellation);
+    } else {
+      MakeRecords(executor, threads, cancellation);
+    }
+    if (clock.Now() - start >= budget) return;
+  }
+}
+
+void IrradianceCachingRendering::FindEvents(Executor& executor, int threads, const Cancellation& cancellation) {
+  const std::size_t count = std::min(stretches_.size() - searched_, static_cast<std::size_t>(threads));
+  std::vector<std::vector<VisibilityEvent>> found(count);
+  executor.ParallelFor(count, threads, [&](std::size_t i) {
+    const auto [track, first] = stretches_[searched_ + i];
+    const std::vector<double>& points = tracks_.points[track];
+    const std::size_t last = std::min(first + kStretch + 1, points.size());
+    std::unique_ptr<RecordMaker> maker = TakeMaker();
+    found[i] = EventsBetween(maker->skyline(), tracks_.tracks[track], std::span(points).subspan(first, last - first),
+                             cancellation);
+    ReturnMaker(std::move(maker));
+  });
+  if (cancellation.cancelled()) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::vector<VisibilityEvent>& events = events_[stretches_[searched_ + i].first];
+    events.insert(events.end(), found[i].begin(), found[i].end());
+  }
+  searched_ += count;
+}
+
+void IrradianceCachingRendering::MakeRecords(Executor& executor, int threads, const Cancellation& cancellation) {
+  const std::size_t count =
+      std::min(wave_.size() - made_.size(), kRecordsPerThread * static_cast<std::size_t>(threads));
+  std::vector<CacheRecord> records(count);
+  std::vector<double> cast(count, 0.0);
+  executor.ParallelFor(count, threads, [&](std::size_t i) {
+    if (cancellation.cancelled()) return;
+    const RecordPlace& place = wave_[made_.size() + i];
+    std::unique_ptr<RecordMaker> maker = TakeMaker();
+    records[i] = maker->Make(tracks_.tracks[place.track], place.track, place.at, waves_, cancellation, cast[i]);
+    ReturnMaker(std::move(maker));
+    records[i].events = events_[place.track];
+  });
+  // Some may have been left half made.
+  if (cancellation.cancelled()) return;
+  for (std::size_t i = 0; i < count; ++i) rays_ += cast[i], made_.push_back(records[i]);
+  if (made_.size() < wave_.size()) return;
+  records_.insert(records_.end(), made_.begin(), made_.end());
+  made_.clear();
+  ++waves_;
+  wave_ = placement_->Next(records_);
+  done_ = wave_.empty();
+}
+
+RenderProgress IrradianceCachingRendering::Progress() const {
+  RenderProgress progress;
+  progress.rays = rays_;
+  progress.samples = records_.empty() ? 0 : maker_options_.rays;
+  if (done_) {
+    progress.fraction = 1;
+  } else if (placement_options_.most_records) {
+    progress.fraction =
+        static_cast<double>(records_.size() + made_.size()) / static_cast<double>(*placement_options_.most_records);
+    progress.fraction = std::min(progress.fraction, 0.99);
+  }
+  return progress;
+}
+
+void IrradianceCachingRendering::AppendRecords(const std::vector<CacheRecord>& records, Field& field) const {
+  const WorldUnits units(scene_->frame());
+  const double length = scene_->frame().scale;
+  const auto channels = static_cast<std::size_t>(scene_->channels());
+  const auto append = [&](const Spectrum& value, double unit, std::vector<double>& out) {
+    for (std::size_t c = 0; c < channels; ++c) out.push_back(unit * value.value[c]);
+  };
+  for (const CacheRecord& record : records) {
+    RecordField& out = field.records.emplace_back();
+    const Track& track = tracks_.tracks[record.track];
+    const Receiver receiver = track.At(record.at);
+    const Point2 world = scene_->ToWorld(receiver.position);
+    out.position = world;
+    out.normal = receiver.normal;
+    if (track.curve() != CurveId::kNone) out.curve = scene_->curve(track.curve()).name;
+    out.side = track.side();
+    out.wave = record.wave;
+    out.left_radius = length * record.left_radius;
+    out.right_radius = length * record.right_radius;
+    append(record.derivative[0], units.irradiance, out.irradiance);
+    if (record.known > 1) append(record.derivative[1], units.gradient, out.gradient);
+    if (record.known > 2) append(record.derivative[2], units.hessian, out.hessian);
+  }
+}
+
+std::shared_ptr<const Field> IrradianceCachingRendering::Snapshot() const {
+  auto field = std::make_shared<Field>();
+  field->rays = rays_;
+  field->probes.resize(scene_->probes().size());
+  // Nothing is known yet.
+  if (caster_ && !tracks_.tracks.empty() && records_.empty()) return field;
+  const WorldUnits units(scene_->frame());
+  const auto channels = static_cast<std::size_t>(scene_->channels());
+  std::vector<CacheRecord> records = records_;
+  std::vector<TrackInterpolation> interpolations;
+  if (placement_) {
+    placement_->SetFootprints(records);
+    std::vector<std::vector<const CacheRecord*>> of_track(tracks_.tracks.size());
+    for (const CacheRecord& record : records) of_track[record.track].push_back(&record);
+    for (auto& track : of_track) {
+      interpolations.emplace_back(std::move(track), placement_options_.degree, WeightingOf(placement_options_.control));
+    }
+  }
+  std::size_t point = 0;
+  for (std::size_t p = 0; p < scene_->probes().size(); ++p) {
+    ProbeField& values = field->probes[p];
+    for (std::size_t i = 0; i < scene_->probes()[p].receivers.size(); ++i, ++point) {
+      Interpolated value;
+      if (placement_) {
+        const TrackPlace& place = tracks_.of_point[point];
+        value = interpolations[place.track].At(place.at);
+      }
+      for (std::size_t c = 0; c < channels; ++c) {
+        values.irradiance.push_back(units.irradiance * value.irradiance.value[c]);
+        values.estimated_error.push_back(units.irradiance * value.error);
+      }
+    }
+  }
+  AppendRecords(records, *field);
+  return field;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_RENDER_IRRADIANCE_CACHING_RENDERING_H_
+#define FLATLIGHT_CORE_RENDER_IRRADIANCE_CACHING_RENDERING_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/cache/placement.h"
+#include "core/cache/record.h"
+#include "core/plane/irradiance_caching/record_maker.h"
+#include "core/plane/irradiance_caching/track.h"
+#include "core/plane/irradiance_caching/track_events.h"
+#include "core/plane/ray_caster.h"
+#include "core/plane/ray_tracing/ray_tree.h"
+#include "core/plane/reference/chart.h"
+#include "core/plane/reference/reference_solver.h"
+#include "core/render/rendering.h"
+
+namespace flatlight {
+
+// First the light that curves reflect, if panels tell it, and the visibility events along the points, if error control
+// asks for them. Then records are made in waves; a wave
+// is a function of the records before it alone. Points are interpolated from the records of whole waves.
+class IrradianceCachingRendering final : public Rendering {
+ public:
+  // The caster's scene has the world of `scene`; it may be null where nothing emits.
+  IrradianceCachingRendering(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
+                             const Plan& plan);
+
+  void Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
+               Clock::Duration budget) override;
+  bool done() const override { return done_; }
+  EndReason end_reason() const override;
+  RenderProgress Progress() const override;
+  std::shared_ptr<const Field> Snapshot() const override;
+
+ private:
+  void StartRecords();
+  void FindEvents(Executor& executor, int threads, const Cancellation& cancellation);
+  void MakeRecords(Executor& executor, int threads, const Cancellation& cancellation);
+  std::unique_ptr<RecordMaker> TakeMaker();
+  void ReturnMaker(std::unique_ptr<RecordMaker> maker);
+  void AppendRecords(const std::vector<CacheRecord>& records, Field& field) const;
+
+  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const RayCaster> caster_;
+  int max_threads_;
+  PlacementOptions placement_options_;
+  RecordMakerOptions maker_options_;
+  std::optional<RayTree> tree_;            // If rays are gathered.
+  std::optional<ReferenceSolver> panels_;  // If panels tell what is reflected.
+  std::vector<Chart> charts_;
+  Tracks tracks_;
+  std::optional<Placement> placement_;  // Unless all is dark.
+  // Stretches of tracks that are yet to be searched for events begin at (track, index of a point).
+  std::vector<std::pair<std::uint32_t, std::size_t>> stretches_;
+  std::size_t searched_ = 0;
+  std::vector<std::vector<VisibilityEvent>> events_;  // By track, in order.
+  std::vector<CacheRecord> records_;                  // Of whole waves.
+  std::vector<RecordPlace> wave_;                     // The wave that is being made,
+  std::vector<CacheRecord> made_;                     // and its records so far.
+  std::uint32_t waves_ = 0;
+  double rays_ = 0;
+  bool done_ = false;
+  std::mutex makers_mutex_;
+  std::vector<std::unique_ptr<RecordMaker>> idle_makers_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_RENDER_IRRADIANCE_CACHING_RENDERING_H_

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// The method `irradiance-caching`: what it agrees with, how it spends records, what it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "core/render/plan.h"
+#include "tests/support/transport/render.h"
+#include "tests/support/transport/scene_maker.h"
+
+namespace flatlight {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+
+Settings Caching() {
+  Settings settings;
+  settings.method = Method::kIrradianceCaching;
+  return settings;
+}
+
+// The largest and the root mean square difference from the reference over all probes, relative to the irradiance or 1 %
+// of its mean.
+struct Difference {
+  double largest = 0;
+  double rms = 0;
+};
+
+Difference FromReference(const std::shared_ptr<const Scene>& scene, const Settings& settings) {
+  Settings truth;
+  truth.method = Method::kReference;
+  truth.derivatives = Derivatives::kNone;
+  truth.max_bounces = settings.max_bounces;
+  const auto expected = Render(scene, truth).field;
+  const auto field = Render(scene, settings).field;
+  Difference difference;
+  double count = 0;
+  for (std::size_t p = 0; p < field->probes.size(); ++p) {
+    EXPECT_EQ(field->probes[p].irradiance.size(), expected->probes[p].irradiance.size());
+    const std::vector<double>& truths = expected->probes[p].irradiance;
+    const double mean = std::accumulate(truths.begin(), truths.end(), 0.0) / static_cast<double>(truths.size());
+    for (std::size_t i = 0; i < truths.size(); ++i) {
+      const double off = std::abs(field->probes[p].irradiance[i] - truths[i]) / std::max(truths[i], 0.01 * mean);
+      difference.largest = std::max(difference.largest, off);
+      difference.rms += off * off;
+      ++count;
+    }
+  }
+  difference.rms = std::sqrt(difference.rms / count);
+  return difference;
+}
+
+// A room with a lamp, a blocker, a disc, and a wall that stands on the floor and lets light through above.
+SceneMaker DividedRoom() {
+  SceneMaker maker = SquareRoom({.reflectance = {0.6}}, 60);
+  maker.Segment("lamp", {-0.4, 0.9}, {-0.8, 0.85}, {.radiance = {5}});
+  maker.Segment("divider", {0.1, -1}, {0.1, 0.4}, {.reflectance = {0.3}});
+  maker.Segment("blocker", {-0.7, 0.1}, {-0.4, 0.15}, {.reflectance = {0.5}});
+  maker.Arc("disc", {{0.5, 0.3}, 0.15, 0, -6.283185307179586}, {.reflectance = {0.7}});
+  return maker;
+}
+
+TEST(IrradianceCachingRenderingTest, AgreesWithTheReference) {
+  const auto scene = DividedRoom().Build();
+  for (const std::optional<std::uint32_t> bounces : {std::optional<std::uint32_t>(1), std::optional<std::uint32_t>()}) {
+    Settings settings = Caching();
+    settings.max_bounces = bounces;
+    for (const double tolerance : {0.03, 0.003}) {
+      settings.tolerance = tolerance;
+      const Difference difference = FromReference(scene, settings);
+      EXPECT_LT(difference.rms, 1.5 * tolerance);
+      EXPECT_LT(difference.largest, 15 * tolerance);
+    }
+  }
+}
+
+TEST(IrradianceCachingRenderingTest, RaysTellWhatPanelsTell) {
+  const auto scene = DividedRoom().Build();
+  Settings settings = Caching();
+  settings.max_bounces = 1;
+  settings.samples = 4096;
+  settings.tolerance = 0.03;
+  const Difference difference = FromReference(scene, settings);
+  EXPECT_LT(difference.rms, 0.02);
+  EXPECT_LT(difference.largest, 0.3);
+}
+
+// The divider parts light from dark: no record of one side counts on the other.
+TEST(IrradianceCachingRenderingTest, NothingLeaksThroughAWall) {
+  SceneMaker maker;
+  maker.Segment("floor", {-1, 0}, {1, 0}).Probe("floor", 100);
+  maker.Segment("wall", {0, 0}, {0, 3});
+  maker.Segment("lamp", {-0.3, 1}, {-0.9, 1}, {.radiance = {1}});
+  for (int point = 0; point < 20; ++point) maker.PointProbe({-1 + 0.1 * point + 0.05, 0.1}, {0, 1});
+  const auto scene = maker.Build();
+  for (int control = 0; control <= static_cast<int>(ErrorControl::kVisibilityEvents); ++control) {
+    Settings settings = Caching();
+    settings.error_control = static_cast<ErrorControl>(control);
+    settings.max_records = 12;
+    const auto field = Render(scene, settings).field;
+    for (std::size_t p = 0; p < field->probes.size(); ++p) {
+      const Probe& probe = scene->probes()[p];
+      for (std::size_t i = 0; i < probe.receivers.size(); ++i) {
+        const double x = scene->ToWorld(probe.receivers[i].position).x;
+        if (x > 0) {
+          EXPECT_EQ(field->probes[p].irradiance[i], 0) << control << ' ' << x;
+        } else {
+          EXPECT_GT(field->probes[p].irradiance[i], 0) << control << ' ' << x;
+        }
+      }
+    }
+  }
+}
+
+TEST(IrradianceCachingRenderingTest, ThreadsAndSlicesLeaveNoTrace) {
+  const auto scene = DividedRoom().Build();
+  for (const bool rays : {false, true}) {
+    Settings settings = Caching();
+    settings.max_bounces = 1;
+    if (rays) settings.samples = 64;
+    settings.tolerance = 0.05;
+    const Ended once = Render(scene, settings);
+    for (const int threads : {2, 7}) {
+      const Ended again = Render(scene, settings, threads, std::chrono::microseconds(200));
+      EXPECT_EQ(HashOf(*again.field), HashOf(*once.field));
+      ASSERT_EQ(again.field->records.size(), once.field->records.size());
+      for (std::size_t i = 0; i < once.field->records.size(); ++i) {
+        EXPECT_EQ(again.field->records[i].position, once.field->records[i].position);
+        EXPECT_EQ(again.field->records[i].irradiance, once.field->records[i].irradiance);
+        EXPECT_EQ(again.field->records[i].left_radius, once.field->records[i].left_radius);
+      }
+    }
+  }
+}
+
+TEST(IrradianceCachingRenderingTest, RecordsAreToldInWorldUnits) {
+  SceneMaker maker;
+  maker.Segment("floor", {10, 10}, {10 + 8e3, 10}).Probe("floor", 50);
+  maker.Segment("lamp", {10 + 5e3, 10 + 4e3}, {10 + 3e3, 10 + 4e3}, {.radiance = {100}});
+  Settings settings = Caching();
+  settings.max_records = 6;
+  const Ended ended = Render(maker.Build(), settings);
+  EXPECT_EQ(ended.reason, EndReason::kSamplesDone);
+  ASSERT_EQ(ended.field->records.size(), 6u);
+  Settings truth;
+  truth.method = Method::kExact;
+  for (const RecordField& record : ended.field->records) {
+    EXPECT_EQ(record.curve, "floor");
+    EXPECT_EQ(record.side, Side::kFront);
+    SceneMaker there = maker;
+    there.PointProbe(record.position, record.normal);
+    const ProbeField exact = Render(there.Build(), truth).field->probes.back();
+    ASSERT_EQ(record.hessian.size(), 1u);
+    EXPECT_NEAR(record.irradiance[0], exact.irradiance[0], 1e-9 * exact.irradiance[0]);
+    EXPECT_NEAR(record.gradient[0], exact.gradient[0], 1e-9 * std::abs(exact.gradient[0]) + 1e-15);
+    EXPECT_NEAR(record.hessian[0], exact.hessian[0], 1e-9 * std::abs(exact.hessian[0]) + 1e-18);
+    EXPECT_GT(record.left_radius + record.right_radius, 100);
+  }
+}
+
+TEST(IrradianceCachingRenderingTest, DarkScenesAreDark) {
+  SceneMaker maker = SquareRoom({.reflectance = {0.5}}, 10);
+  const Ended ended = Render(maker.Build(), Caching());
+  for (const ProbeField& probe : ended.field->probes)
+    for (const double value : probe.irradiance) EXPECT_EQ(value, 0);
+  EXPECT_TRUE(ended.field->records.empty());
+}
+
+std::vector<std::string> Mistakes(const Scene& scene, const Settings& settings) {
+  Diagnostics diagnostics;
+  EXPECT_FALSE(MakePlan(scene, settings, diagnostics).has_value());
+  std::vector<std::string> messages;
+  for (const Diagnostic& diagnostic : diagnostics.kept())
+    messages.push_back(diagnostic.path + ": " + diagnostic.message);
+  return messages;
+}
+
+TEST(IrradianceCachingRenderingTest, SettingsThatItWouldIgnoreAreMistakes) {
+  const auto scene = DividedRoom().Build();
+  Settings settings = Caching();
+  settings.extrapolation = 3;
+  settings.tolerance = 0.1;
+  settings.max_records = 0;
+  settings.target_error = 0.1;
+  settings.time_limit = 1;
+  settings.derivatives = Derivatives::kGradient;
+  settings.gather = Gather::kReference;
+  settings.samples = 16;
+  EXPECT_THAT(Mistakes(*scene, settings),
+              UnorderedElementsAre(HasSubstr("settings.extrapolation: is 3"), HasSubstr("settings.maxRecords: is 0"),
+                                   HasSubstr("settings.maxRecords: is given together"),
+                                   HasSubstr("settings.targetError: does not apply"),
+                                   HasSubstr("settings.timeLimit: does not apply"),
+                                   HasSubstr("settings.derivatives: irradiance-caching gives none"),
+                                   HasSubstr("settings.samples: does not apply where records gather from")));
+  Settings other;
+  other.method = Method::kPathTracing;
+  other.error_control = ErrorControl::kSplitSphere;
+  other.extrapolation = 1;
+  other.tolerance = 0.1;
+  other.max_records = 5;
+  other.gather = Gather::kRayTracing;
+  EXPECT_THAT(Mistakes(*scene, other), testing::Each(HasSubstr("applies to irradiance-caching alone")));
+  EXPECT_EQ(Mistakes(*scene, other).size(), 5u);
+}
+
+}  // namespace
+}  // namespace flatlight
