@@ -59,6 +59,11 @@ struct Series {
     f[0] = value;
     return f;
   }
+  double Derivative(std::size_t k) const {
+    double factorial = 1;
+    for (std::size_t i = 2; i <= k; ++i) factorial *= static_cast<double>(i);
+    return factorial * c[k];
+  }
   // The k-th coefficient of a product, for series that are not known further yet.
   static double Times(const Series& f, const Series& g, std::size_t k) {
     double sum = 0;

@@ -79,20 +79,8 @@ EndReason IrradianceCachingRendering::end_reason() const {
 }
 
 std::unique_ptr<RecordMaker> IrradianceCachingRendering::TakeMaker() {
-  {
-    const std::lock_guard lock(makers_mutex_);
-    if (!idle_makers_.empty()) {
-      std::unique_ptr<RecordMaker> maker = std::move(idle_makers_.back());
-      idle_makers_.pop_back();
-      return maker;
-    }
-  }
-  return std::make_unique<RecordMaker>(*caster_, charts_, tree_ ? &*tree_ : nullptr, maker_options_);
-}
-
-void IrradianceCachingRendering::ReturnMaker(std::unique_ptr<RecordMaker> maker) {
-  const std::lock_guard lock(makers_mutex_);
-  idle_makers_.push_back(std::move(maker));
+  return makers_.Take(
+      [&] { return std::make_unique<RecordMaker>(*caster_, charts_, tree_ ? &*tree_ : nullptr, maker_options_); });
 }
 
 void IrradianceCachingRendering::Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
@@ -125,7 +113,7 @@ void IrradianceCachingRendering::FindEvents(Executor& executor, int threads, con
     std::unique_ptr<RecordMaker> maker = TakeMaker();
     found[i] = EventsBetween(maker->skyline(), tracks_.tracks[track], std::span(points).subspan(first, last - first),
                              cancellation);
-    ReturnMaker(std::move(maker));
+    makers_.Return(std::move(maker));
   });
   if (cancellation.cancelled()) return;
   for (std::size_t i = 0; i < count; ++i) {
@@ -145,7 +133,7 @@ void IrradianceCachingRendering::MakeRecords(Executor& executor, int threads, co
     const RecordPlace& place = wave_[made_.size() + i];
     std::unique_ptr<RecordMaker> maker = TakeMaker();
     records[i] = maker->Make(tracks_.tracks[place.track], place.track, place.at, waves_, cancellation, cast[i]);
-    ReturnMaker(std::move(maker));
+    makers_.Return(std::move(maker));
     records[i].events = events_[place.track];
   });
   // Some may have been left half made.

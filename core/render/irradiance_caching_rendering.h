@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "core/plane/ray_tracing/ray_tree.h"
 #include "core/plane/reference/chart.h"
 #include "core/plane/reference/reference_solver.h"
+#include "core/render/idle_pool.h"
 #include "core/render/rendering.h"
 
 namespace flatlight {
@@ -44,7 +44,6 @@ class IrradianceCachingRendering final : public Rendering {
   void FindEvents(Executor& executor, int threads, const Cancellation& cancellation);
   void MakeRecords(Executor& executor, int threads, const Cancellation& cancellation);
   std::unique_ptr<RecordMaker> TakeMaker();
-  void ReturnMaker(std::unique_ptr<RecordMaker> maker);
   void AppendRecords(const std::vector<CacheRecord>& records, Field& field) const;
 
   std::shared_ptr<const Scene> scene_;
@@ -67,8 +66,7 @@ class IrradianceCachingRendering final : public Rendering {
   std::uint32_t waves_ = 0;
   double rays_ = 0;
   bool done_ = false;
-  std::mutex makers_mutex_;
-  std::vector<std::unique_ptr<RecordMaker>> idle_makers_;
+  IdlePool<RecordMaker> makers_;
 };
 
 }  // namespace flatlight

@@ -18,7 +18,6 @@ namespace flatlight {
 namespace {
 
 constexpr int kDistanceRays = 64;
-constexpr double kFactorial[] = {1, 1, 2, 6, 24};
 // The fourth derivative of what rays bring is noise.
 constexpr std::size_t kKnownOfRays = 4;
 
@@ -102,7 +101,7 @@ void RecordMaker::AddReflected(const Receiver& receiver, std::uint64_t key, cons
     const ArcSeries sine = SineSeries(after.break_before.value_or(edge), receiver);
     const Spectrum jump = Difference(before.radiance, after.radiance);
     for (std::size_t m = 1; m < kRecordOrders; ++m)
-      record.derivative[m] = record.derivative[m] + (kFactorial[m] * sine[m]) * jump;
+      record.derivative[m] = record.derivative[m] + sine.Derivative(m) * jump;
     // Of neighbours' difference half is each one's own noise; what it changes by counts with it.
     const double width = 0.5 * (after.end - after.begin + before.end - before.begin);
     variance = variance + (0.5 * width * width) * (jump * jump);

@@ -13,7 +13,6 @@
 namespace flatlight {
 namespace {
 
-constexpr double kFactorial[] = {1, 1, 2, 6, 24};
 constexpr int kDigits = 12;
 constexpr int kDeepest = 40;  // Halvings of a panel toward the receiver.
 
@@ -190,7 +189,7 @@ std::array<Spectrum, kRecordOrders> ReflectedSeries::At(const Receiver& receiver
         const Polynomial polynomial(stretch * (u - ArcSeries::Constant(panel.low)) - ArcSeries::Constant(1));
         for (std::size_t c = 0; c < channels; ++c) {
           const ArcSeries irradiance = weighted * polynomial.Sum(reflected_.light->Of(i, c));
-          for (std::size_t m = 0; m < kRecordOrders; ++m) sum[m].value[c] += kFactorial[m] * irradiance[m];
+          for (std::size_t m = 0; m < kRecordOrders; ++m) sum[m].value[c] += irradiance.Derivative(m);
         }
       };
       // Halves, and halves of them, where the receiver is near.

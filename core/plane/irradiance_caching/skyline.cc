@@ -14,7 +14,6 @@
 namespace flatlight {
 namespace {
 
-constexpr double kFactorial[] = {1, 1, 2, 6, 24};
 constexpr std::uint64_t kDark = 1;
 // An edge has its circle's radius to rounding.
 constexpr double kSameRadius = 1e-6;
@@ -128,7 +127,7 @@ void Skyline::LookFrom(const Receiver& receiver) {
     if (!series) continue;
     const auto* point = std::get_if<PointLight>(&light.kind);
     const Spectrum& strength = point ? point->intensity : std::get<DirectionalLight>(light.kind).irradiance;
-    for (std::size_t k = 0; k < kRecordOrders; ++k) lights_[k] = lights_[k] + (kFactorial[k] * (*series)[k]) * strength;
+    for (std::size_t k = 0; k < kRecordOrders; ++k) lights_[k] = lights_[k] + series->Derivative(k) * strength;
   }
 }
 
@@ -140,7 +139,7 @@ std::array<Spectrum, kRecordOrders> Skyline::Irradiance() const {
     begin = &b.edge;
     const ArcSeries sine = SineSeries(b.edge, receiver_);
     const Spectrum jump = Difference(b.before, b.after);
-    for (std::size_t k = 1; k < kRecordOrders; ++k) direct[k] = direct[k] + (kFactorial[k] * sine[k]) * jump;
+    for (std::size_t k = 1; k < kRecordOrders; ++k) direct[k] = direct[k] + sine.Derivative(k) * jump;
   }
   if (reflected_) {
     const std::array<Spectrum, kRecordOrders> more = reflected_->At(receiver_, *pieces_);
