@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs jobs in short slices, in turn, so that every job shows something soon and none holds up the rest.
+// Runs jobs in short slices, so that every job shows something soon and none holds up the rest. Whose turn it is is
+// decided by class, then by who has attained least (FairQueue, Accounts): a thousand jobs of one user delay the first
+// picture of another's by a slice.
 #ifndef FLATLIGHT_SERVER_SCHEDULER_SCHEDULER_H_
 #define FLATLIGHT_SERVER_SCHEDULER_SCHEDULER_H_
 
@@ -19,15 +21,23 @@
 #include "core/execution/clock.h"
 #include "core/execution/executor.h"
 #include "core/render/rendering.h"
+#include "server/scheduler/accounts.h"
+#include "server/scheduler/admission_pace.h"
+#include "server/scheduler/fair_queue.h"
+#include "server/scheduler/job_run.h"
 #include "server/scheduler/task_queue.h"
 #include "server/store/job_store.h"
 
 namespace flatlight {
 
 struct SchedulerOptions {
-  int runners = 1;                     // Slices at once. More than one keeps processors busy when jobs use few threads.
-  int starters = 1;                    // Renderings prepared at once (acceleration structures), beside the slices.
-  std::size_t max_running_jobs = 200;  // Later ones wait in the state QUEUED.
+  int runners = 1;   // Slices at once. More than one keeps processors busy when jobs use few threads.
+  int starters = 1;  // Renderings prepared at once (acceleration structures), beside the slices.
+  // Places. Later jobs wait in the state QUEUED, and so do those of a user who holds as many places as are free: there
+  // is always one for who comes anew (dynamic thresholds: Choudhury, Hahne 1998). Paused jobs keep theirs.
+  std::size_t max_running_jobs = 200;
+  std::size_t max_jobs_per_user = 1000;                      // That have not ended.
+  Clock::Duration queue_interval = std::chrono::seconds(1);  // Between what a waiting job is told of its place.
   Clock::Duration first_slice =
       std::chrono::milliseconds(5);  // Short: a picture soon, also when many jobs come at once.
   Clock::Duration slice = std::chrono::milliseconds(20);
@@ -49,32 +59,44 @@ class Scheduler {
 
   // Accepts a job and returns at once. The scene is let go when the job has ended. If `key` has made a job before,
   // returns that one.
+  // RESOURCE_EXHAUSTED if the owner has too many jobs that have not ended.
   absl::StatusOr<JobRecord> Submit(std::shared_ptr<const JobSpec> spec, std::shared_ptr<const Scene> scene,
                                    const std::optional<RequestKey>& key);
   // Stops the work and returns the ended job, after at most one shard's time. An ended job stays as it is. What is
   // being prepared (for a million curves about a second's work) is prepared to its end, for nothing, after the job has
   // ended.
   absl::StatusOr<JobRecord> Cancel(const JobId& id);
+  // No slice of the job runs after the return, until Resume; its time stands still. FAILED_PRECONDITION if it has
+  // ended.
+  absl::StatusOr<JobRecord> Pause(const JobId& id);
+  absl::StatusOr<JobRecord> Resume(const JobId& id);
   // Cancels and removes.
   absl::Status Delete(const JobId& id);
   // Cancels all jobs, refuses new ones, and waits until nothing works any more.
   void Stop();
 
  private:
-  struct Run;
-  using RunPtr = std::shared_ptr<Run>;
+  using RunPtr = std::shared_ptr<JobRun>;
 
+  absl::Status CheckQuota(const std::string& owner) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Gives free places to those who wait. To be called after each change of places or of what waits.
   void Admit() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void Prepare(const RunPtr& run);
+  void TellPlaces() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void PrepareNext();
   void RunSlices();
   RunPtr NextReady() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  // Returns whether it published a state.
-  bool RunSlice(Run& run);
-  // Stores the run's state under the next sequence number; the listener must be told afterwards.
-  void Publish(Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void End(Run& run, JobPhase phase) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void RunSlice(JobRun& run);
+  // After its preparation or a slice: to the queue in which it waits for the next one.
+  void Requeue(const RunPtr& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Stores the run's state under the next sequence number, for TellListener.
+  void Publish(JobRun& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Of all that was published and not yet told.
+  void TellListener() ABSL_LOCKS_EXCLUDED(mutex_);
+  void End(JobRun& run, JobPhase phase) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Asks a run to end; it has ended on return unless it is being sliced or waits for its last slice.
-  void RequestCancel(Run& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void RequestCancel(const RunPtr& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void EnterPause(JobRun& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  RunPtr Find(const JobId& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const SchedulerOptions options_;
   JobStore& store_;
@@ -85,15 +107,18 @@ class Scheduler {
 
   std::mutex mutex_;
   std::condition_variable ready_changed_;
-  std::condition_variable run_ended_;
+  std::condition_variable run_stopped_;  // One has ended or been paused.
   bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
-  std::unordered_map<JobId, RunPtr> runs_ ABSL_GUARDED_BY(mutex_);  // Those that have not ended.
-  std::deque<RunPtr> waiting_ ABSL_GUARDED_BY(mutex_);              // For one of max_running_jobs places.
-  std::deque<RunPtr> urgent_ ABSL_GUARDED_BY(mutex_);               // To be ended: cancelled.
-  std::deque<RunPtr> newcomers_ ABSL_GUARDED_BY(mutex_);            // Nothing to show yet.
-  std::deque<RunPtr> ready_ ABSL_GUARDED_BY(mutex_);
-  int newcomers_in_a_row_ ABSL_GUARDED_BY(mutex_) = 0;
-  std::size_t running_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::unordered_map<JobId, RunPtr> runs_ ABSL_GUARDED_BY(mutex_);                // Those that have not ended.
+  std::unordered_map<std::string, std::size_t> jobs_of_ ABSL_GUARDED_BY(mutex_);  // How many of `runs_`, by owner.
+  Accounts accounts_ ABSL_GUARDED_BY(mutex_);
+  FairQueue<RunPtr> waiting_ ABSL_GUARDED_BY(mutex_);    // For one of max_running_jobs places.
+  FairQueue<RunPtr> preparing_ ABSL_GUARDED_BY(mutex_);  // For a starter. Those that have ended are passed over.
+  FairQueue<RunPtr> ready_ ABSL_GUARDED_BY(mutex_);      // For a slice.
+  std::deque<RunPtr> urgent_ ABSL_GUARDED_BY(mutex_);    // To be ended: cancelled.
+  AdmissionPace pace_ ABSL_GUARDED_BY(mutex_);
+  std::optional<Clock::Time> places_told_ ABSL_GUARDED_BY(mutex_);
+  std::vector<JobId> untold_ ABSL_GUARDED_BY(mutex_);
   std::unique_ptr<TaskQueue> starters_;
   std::vector<std::thread> runners_;
 };

@@ -18,6 +18,8 @@ v1::Job::State PhaseToProto(JobPhase phase) {
       return v1::Job::QUEUED;
     case JobPhase::kRunning:
       return v1::Job::RUNNING;
+    case JobPhase::kPaused:
+      return v1::Job::PAUSED;
     case JobPhase::kSucceeded:
       return v1::Job::SUCCEEDED;
     case JobPhase::kFailed:
@@ -48,6 +50,28 @@ void FillProgress(const JobState& state, v1::Progress& out) {
   if (progress.relative_error) out.set_relative_error(*progress.relative_error);
 }
 
+v1::QueuePlace::Reason ReasonToProto(QueuePlace::Reason reason) {
+  switch (reason) {
+    case QueuePlace::Reason::kServerFull:
+      return v1::QueuePlace::SERVER_FULL;
+    case QueuePlace::Reason::kOwnJobs:
+      return v1::QueuePlace::OWN_JOBS;
+  }
+  return v1::QueuePlace::REASON_UNSPECIFIED;
+}
+
+v1::JobClass JobClassToProto(JobClass job_class) {
+  switch (job_class) {
+    case JobClass::kInteractive:
+      return v1::INTERACTIVE;
+    case JobClass::kGraded:
+      return v1::GRADED;
+    case JobClass::kRegrade:
+      return v1::REGRADE;
+  }
+  return v1::JOB_CLASS_UNSPECIFIED;
+}
+
 // What decides a result's bits. Threads and skips do not.
 std::string JobKey(const JobSpec& spec, const std::string& build) {
   v1::Settings settings = SettingsToProto(spec.plan.settings);
@@ -70,6 +94,13 @@ v1::Job JobToProto(const JobSpec& spec, const JobState& state, JobView view) {
     job.set_scene(spec.scene->name);
     *job.mutable_settings() = SettingsToProto(spec.settings);
     *job.mutable_plan() = PlanToProto(spec.plan);
+    job.set_job_class(JobClassToProto(spec.job_class));
+  }
+  if (state.queue) {
+    job.mutable_queue()->set_reason(ReasonToProto(state.queue->reason));
+    job.mutable_queue()->set_ahead(static_cast<double>(state.queue->ahead));
+    if (state.queue->expected_start)
+      SetTime(*state.queue->expected_start, *job.mutable_queue()->mutable_expected_start());
   }
   job.set_state(PhaseToProto(state.phase));
   FillProgress(state, *job.mutable_progress());
@@ -101,6 +132,20 @@ absl::StatusOr<v1::RenderResult> MakeResult(const JobRecord& job, const std::str
   result.mutable_statistics()->set_wall_seconds(state.elapsed_seconds);
   result.mutable_statistics()->set_cpu_seconds(state.cpu_seconds);
   return result;
+}
+
+absl::StatusOr<JobClass> JobClassFromProto(v1::JobClass job_class) {
+  switch (job_class) {
+    case v1::JOB_CLASS_UNSPECIFIED:
+    case v1::INTERACTIVE:
+      return JobClass::kInteractive;
+    case v1::GRADED:
+      return JobClass::kGraded;
+    case v1::REGRADE:
+      return JobClass::kRegrade;
+    default:
+      return MakeFieldError("job_class", std::to_string(job_class) + "; allowed: INTERACTIVE, GRADED, REGRADE");
+  }
 }
 
 absl::StatusOr<JobId> ParseJobName(const std::string& name) {

@@ -22,6 +22,9 @@ absl::StatusOr<v1::RenderResult> MakeResult(const JobRecord& job, const std::str
 // INVALID_ARGUMENT if `name` is not jobs/{uuid}.
 absl::StatusOr<JobId> ParseJobName(const std::string& name);
 
+// INTERACTIVE if it is not said; INVALID_ARGUMENT of a class that is unknown.
+absl::StatusOr<JobClass> JobClassFromProto(v1::JobClass job_class);
+
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_SERVER_SERVICE_JOB_CONVERT_H_

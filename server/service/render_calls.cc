@@ -72,11 +72,22 @@ absl::StatusOr<std::optional<RequestKey>> KeyOf(const Caller& caller, const v1::
 
 v1::Job WholeJob(const JobRecord& job) { return JobToProto(*job.spec, *job.state, JobView::kWhole); }
 
+template <class Action>
+absl::StatusOr<v1::Job> ControlJob(const std::string& name, const Action& action) {
+  const auto id = ParseJobName(name);
+  if (!id.ok()) return id.status();
+  const absl::StatusOr<JobRecord> job = action(*id);
+  if (!job.ok()) return job.status();
+  return WholeJob(*job);
+}
+
 }  // namespace
 
 absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const v1::CreateJobRequest& request,
                                   const Proceed& proceed) {
   if (backend.draining) return MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down");
+  const auto job_class = JobClassFromProto(request.job_class());
+  if (!job_class.ok()) return job_class.status();
   const auto key = KeyOf(caller, request);
   if (!key.ok()) return key.status();
   if (*key) {
@@ -93,6 +104,7 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
   auto spec = std::make_shared<JobSpec>();
   spec->id = JobId::Random();
   spec->owner = caller.name;
+  spec->job_class = *job_class;
   spec->scene = std::make_shared<SceneOutline>(*planned->scene);
   spec->settings = std::move(planned->settings);
   spec->plan = std::move(planned->plan);
@@ -130,11 +142,15 @@ absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJo
 }
 
 absl::StatusOr<v1::Job> CancelJob(Backend& backend, const v1::CancelJobRequest& request) {
-  const auto id = ParseJobName(request.name());
-  if (!id.ok()) return id.status();
-  const auto job = backend.scheduler.Cancel(*id);
-  if (!job.ok()) return job.status();
-  return WholeJob(*job);
+  return ControlJob(request.name(), [&](const JobId& id) { return backend.scheduler.Cancel(id); });
+}
+
+absl::StatusOr<v1::Job> PauseJob(Backend& backend, const v1::PauseJobRequest& request) {
+  return ControlJob(request.name(), [&](const JobId& id) { return backend.scheduler.Pause(id); });
+}
+
+absl::StatusOr<v1::Job> ResumeJob(Backend& backend, const v1::ResumeJobRequest& request) {
+  return ControlJob(request.name(), [&](const JobId& id) { return backend.scheduler.Resume(id); });
 }
 
 absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const v1::DeleteJobRequest& request) {

@@ -15,6 +15,8 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
 absl::StatusOr<v1::Job> GetJob(Backend& backend, const v1::GetJobRequest& request);
 absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJobsRequest& request);
 absl::StatusOr<v1::Job> CancelJob(Backend& backend, const v1::CancelJobRequest& request);
+absl::StatusOr<v1::Job> PauseJob(Backend& backend, const v1::PauseJobRequest& request);
+absl::StatusOr<v1::Job> ResumeJob(Backend& backend, const v1::ResumeJobRequest& request);
 absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const v1::DeleteJobRequest& request);
 absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const v1::ExplainJobRequest& request,
                                                   const Proceed& proceed);

@@ -54,6 +54,18 @@ grpc::ServerUnaryReactor* RenderService::CancelJob(Context* context, const Bytes
       [this](const Caller&, const v1::CancelJobRequest& r) { return flatlight::CancelJob(backend_, r); });
 }
 
+grpc::ServerUnaryReactor* RenderService::PauseJob(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::PauseJobRequest>(
+      backend_, context, request, response, kQuickLane,
+      [this](const Caller&, const v1::PauseJobRequest& r) { return flatlight::PauseJob(backend_, r); });
+}
+
+grpc::ServerUnaryReactor* RenderService::ResumeJob(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::ResumeJobRequest>(
+      backend_, context, request, response, kQuickLane,
+      [this](const Caller&, const v1::ResumeJobRequest& r) { return flatlight::ResumeJob(backend_, r); });
+}
+
 grpc::ServerUnaryReactor* RenderService::DeleteJob(Context* context, const Bytes* request, Bytes* response) {
   return Answer<v1::DeleteJobRequest>(
       backend_, context, request, response, kQuickLane,

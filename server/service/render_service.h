@@ -12,8 +12,9 @@ namespace flatlight {
 template <class Base>
 using RawRenderUnary = v1::RenderService::WithRawCallbackMethod_CreateJob<
     v1::RenderService::WithRawCallbackMethod_GetJob<v1::RenderService::WithRawCallbackMethod_ListJobs<
-        v1::RenderService::WithRawCallbackMethod_CancelJob<v1::RenderService::WithRawCallbackMethod_DeleteJob<
-            v1::RenderService::WithRawCallbackMethod_ExplainJob<Base>>>>>>;
+        v1::RenderService::WithRawCallbackMethod_CancelJob<v1::RenderService::WithRawCallbackMethod_PauseJob<
+            v1::RenderService::WithRawCallbackMethod_ResumeJob<v1::RenderService::WithRawCallbackMethod_DeleteJob<
+                v1::RenderService::WithRawCallbackMethod_ExplainJob<Base>>>>>>>>;
 using RawRenderService = RawRenderUnary<v1::RenderService::WithRawCallbackMethod_WatchJob<
     v1::RenderService::WithRawCallbackMethod_GetResult<v1::RenderService::Service>>>;
 
@@ -28,6 +29,8 @@ class RenderService final : public RawRenderService {
   grpc::ServerUnaryReactor* GetJob(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerUnaryReactor* ListJobs(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerUnaryReactor* CancelJob(Context* context, const Bytes* request, Bytes* response) override;
+  grpc::ServerUnaryReactor* PauseJob(Context* context, const Bytes* request, Bytes* response) override;
+  grpc::ServerUnaryReactor* ResumeJob(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerUnaryReactor* DeleteJob(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerUnaryReactor* ExplainJob(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerWriteReactor<Bytes>* WatchJob(Context* context, const Bytes* request) override;

@@ -132,6 +132,7 @@ v1::GetCapabilitiesResponse GetCapabilities(const Backend& backend) {
   limits.set_max_pixels(backend.limits.max_pixels);
   limits.set_max_running_jobs(backend.limits.max_running_jobs);
   limits.set_max_jobs(backend.limits.max_jobs);
+  limits.set_max_jobs_per_user(backend.limits.max_jobs_per_user);
   limits.set_max_watches(backend.limits.max_watches);
   response.set_threads(static_cast<std::uint32_t>(backend.threads));
   response.set_processor(ProcessorModel());

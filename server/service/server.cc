@@ -50,6 +50,7 @@ SchedulerOptions MakeSchedulerOptions(const ServerOptions& options) {
   scheduler.runners = 2;
   scheduler.starters = 2;
   scheduler.max_running_jobs = options.limits.max_running_jobs;
+  scheduler.max_jobs_per_user = options.limits.max_jobs_per_user;
   return scheduler;
 }
 

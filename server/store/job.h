@@ -15,6 +15,7 @@
 #include "core/render/field.h"
 #include "core/render/plan.h"
 #include "core/render/rendering.h"
+#include "server/store/job_class.h"
 #include "server/store/job_id.h"
 #include "server/store/scene_outline.h"
 
@@ -24,16 +25,30 @@ using WallTime = std::chrono::system_clock::time_point;
 
 struct JobSpec {
   JobId id;
-  std::string owner;                          // The caller that made it.
+  std::string owner;  // The caller that made it.
+  JobClass job_class = JobClass::kInteractive;
   std::shared_ptr<const SceneOutline> scene;  // Of the scene itself, only a job that has not ended has a share.
   Settings settings;                          // As requested.
   Plan plan;
   WallTime create_time;
 };
 
-enum class JobPhase : std::uint8_t { kQueued, kRunning, kSucceeded, kFailed, kCancelled };
+enum class JobPhase : std::uint8_t { kQueued, kRunning, kPaused, kSucceeded, kFailed, kCancelled };
 
-inline bool HasEnded(JobPhase phase) { return phase != JobPhase::kQueued && phase != JobPhase::kRunning; }
+inline bool HasEnded(JobPhase phase) { return phase > JobPhase::kPaused; }
+
+// Why and how long a queued job waits.
+struct QueuePlace {
+  enum class Reason : std::uint8_t {
+    kServerFull,  // As many jobs run as the server has places for.
+    kOwnJobs      // Its owner's jobs hold as many places as are left for others.
+  };
+  Reason reason = Reason::kServerFull;
+  std::size_t ahead = 0;                   // Jobs that begin before it, if no others come.
+  std::optional<WallTime> expected_start;  // A forecast by the pace of late.
+
+  friend bool operator==(const QueuePlace&, const QueuePlace&) = default;
+};
 
 // When values last changed: for each probe, for each run of kPoints points, the sequence of the state that brought the
 // present values. So a reader that knows the state of some sequence is told only what is newer.
@@ -50,6 +65,7 @@ struct JobState {
   double cpu_seconds = 0;      // Processor time of all threads that worked for the job.
   std::optional<WallTime> start_time;
   std::optional<WallTime> end_time;
+  std::optional<QueuePlace> queue;      // Of a job that waits for a place to run.
   std::optional<EndReason> end_reason;  // Of a job that succeeded.
   absl::Status error;                   // Of a job that failed.
   std::shared_ptr<const Field> field;   // Null before the first picture.

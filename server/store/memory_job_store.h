@@ -19,7 +19,7 @@ namespace flatlight {
 class MemoryJobStore final : public JobStore {
  public:
   struct Limits {
-    std::size_t max_jobs = 1000;
+    std::size_t max_jobs = 10'000;
     double max_bytes = 4e9;        // Of scenes and fields of all jobs, estimated.
     double max_ended_bytes = 1e9;  // Of the results of jobs that have ended, estimated.
     std::size_t max_requests = 100'000;

@@ -12,6 +12,7 @@
 #include "client/cli/commands/console.h"
 #include "client/cli/commands/session.h"
 #include "client/cli/jobs/job_name.h"
+#include "client/cli/jobs/watch.h"
 #include "client/cli/outputs/outputs.h"
 #include "client/cli/scenes/scene_file.h"
 #include "client/cli/scenes/scene_upload.h"
@@ -83,7 +84,7 @@ std::string BusyNote(Session& session) {
   const auto jobs = ListJobs(session.connection());
   if (!jobs.ok()) return "";
   const auto active = std::count_if(jobs->begin(), jobs->end(), [](const v1::Job& job) {
-    return job.state() == v1::Job::RUNNING || job.state() == v1::Job::QUEUED;
+    return !HasEnded(job.state()) && job.state() != v1::Job::PAUSED;
   });
   return active == 0 ? ""
                      : "note: the server has other jobs to do (" + std::to_string(active) + "): times will be noisy\n";

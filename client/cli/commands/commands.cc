@@ -15,6 +15,8 @@ CommandResult RunCommand(const CommandLine& line, Interruption& interruption) {
       {"show", Show},
       {"fetch", Fetch},
       {"cancel", Cancel},
+      {"pause", Pause},
+      {"resume", Resume},
       {"scenes", Scenes},
       {"explain", Explain},
       {"validate", Validate},

@@ -27,6 +27,8 @@ CommandResult Jobs(const CommandLine& line, Interruption& interruption);
 CommandResult Show(const CommandLine& line, Interruption& interruption);
 CommandResult Fetch(const CommandLine& line, Interruption& interruption);
 CommandResult Cancel(const CommandLine& line, Interruption& interruption);
+CommandResult Pause(const CommandLine& line, Interruption& interruption);
+CommandResult Resume(const CommandLine& line, Interruption& interruption);
 
 // scene_commands.cc
 CommandResult Scenes(const CommandLine& line, Interruption& interruption);

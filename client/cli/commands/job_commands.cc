@@ -30,6 +30,19 @@ CommandResult Answer(const std::string& text) {
   return ExitCode::kDone;
 }
 
+// Prints the job as `act` leaves it.
+CommandResult Control(const CommandLine& line, Interruption& interruption,
+                      absl::StatusOr<v1::Job> (*act)(Connection&, const std::string&)) {
+  const auto session = OpenServer(line, interruption);
+  if (!session.ok()) return session.status();
+  const auto name = ResolveJobName((*session)->connection(), line.job);
+  if (!name.ok()) return name.status();
+  const auto job = act((*session)->connection(), *name);
+  if (!job.ok()) return job.status();
+  if (line.json) return Answer(ToJson(*job));
+  return line.quiet ? ExitCode::kDone : Answer(job->name() + " " + OptionName(job->state()) + '\n');
+}
+
 }  // namespace
 
 CommandResult Submit(const CommandLine& line, Interruption& interruption) {
@@ -41,7 +54,7 @@ CommandResult Submit(const CommandLine& line, Interruption& interruption) {
   Connection& connection = (*session)->connection();
   const auto source = ProvideScene(connection, *scene, line.probes);
   if (!source.ok()) return source.status();
-  const auto job = CreateJob(connection, *source, line.settings);
+  const auto job = CreateJob(connection, *source, line.settings, line.job_class);
   if (!job.ok()) return ExplainSceneError(connection, *scene, *source, job.status());
   Console console(Console::Answer::kMachine, line.quiet);
   console.Say("scene     " + Printable(job->scene()) + " (" + scene->label + ")\n" + ShortPlanText(job->plan()));
@@ -115,14 +128,15 @@ CommandResult Fetch(const CommandLine& line, Interruption& interruption) {
 }
 
 CommandResult Cancel(const CommandLine& line, Interruption& interruption) {
-  const auto session = OpenServer(line, interruption);
-  if (!session.ok()) return session.status();
-  const auto name = ResolveJobName((*session)->connection(), line.job);
-  if (!name.ok()) return name.status();
-  const auto job = CancelJob((*session)->connection(), *name);
-  if (!job.ok()) return job.status();
-  if (line.json) return Answer(ToJson(*job));
-  return line.quiet ? ExitCode::kDone : Answer(job->name() + " " + OptionName(job->state()) + '\n');
+  return Control(line, interruption, CancelJob);
+}
+
+CommandResult Pause(const CommandLine& line, Interruption& interruption) {
+  return Control(line, interruption, PauseJob);
+}
+
+CommandResult Resume(const CommandLine& line, Interruption& interruption) {
+  return Control(line, interruption, ResumeJob);
 }
 
 }  // namespace flatlight

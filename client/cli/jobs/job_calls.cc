@@ -13,12 +13,25 @@ namespace {
 constexpr int kCreateTries = 3;
 constexpr std::chrono::seconds kSilence{30};
 
+// Also after a signal.
+template <class Request, class Method>
+absl::StatusOr<v1::Job> ControlJob(Connection& connection, Method method, const std::string& name) {
+  Request request;
+  request.set_name(name);
+  v1::Job job;
+  const absl::Status status = connection.Call(connection.render(), method, request, job, Connection::OnSignal::kGoOn);
+  if (!status.ok()) return status;
+  return job;
+}
+
 }  // namespace
 
-absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource& scene, const v1::Settings& settings) {
+absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource& scene, const v1::Settings& settings,
+                                  v1::JobClass job_class) {
   v1::CreateJobRequest request;
   *request.mutable_scene() = scene;
   *request.mutable_settings() = settings;
+  request.set_job_class(job_class);
   request.set_request_id(NewUuid());
   v1::Job job;
   absl::Status status;
@@ -43,13 +56,15 @@ absl::StatusOr<v1::Job> GetJob(Connection& connection, const std::string& name) 
 }
 
 absl::StatusOr<v1::Job> CancelJob(Connection& connection, const std::string& name) {
-  v1::CancelJobRequest request;
-  request.set_name(name);
-  v1::Job job;
-  const absl::Status status = connection.Call(connection.render(), &v1::RenderService::Stub::CancelJob, request, job,
-                                              Connection::OnSignal::kGoOn);
-  if (!status.ok()) return status;
-  return job;
+  return ControlJob<v1::CancelJobRequest>(connection, &v1::RenderService::Stub::CancelJob, name);
+}
+
+absl::StatusOr<v1::Job> PauseJob(Connection& connection, const std::string& name) {
+  return ControlJob<v1::PauseJobRequest>(connection, &v1::RenderService::Stub::PauseJob, name);
+}
+
+absl::StatusOr<v1::Job> ResumeJob(Connection& connection, const std::string& name) {
+  return ControlJob<v1::ResumeJobRequest>(connection, &v1::RenderService::Stub::ResumeJob, name);
 }
 
 absl::Status DeleteJob(Connection& connection, const std::string& name) {

@@ -11,12 +11,15 @@
 namespace flatlight {
 
 // Repeats itself if the server was lost on the way; a request id makes sure that there is one job.
-absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource& scene, const v1::Settings& settings);
+absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource& scene, const v1::Settings& settings,
+                                  v1::JobClass job_class = v1::INTERACTIVE);
 
 absl::StatusOr<v1::Job> GetJob(Connection& connection, const std::string& name);
 
-// Works also after a signal.
+// These work also after a signal.
 absl::StatusOr<v1::Job> CancelJob(Connection& connection, const std::string& name);
+absl::StatusOr<v1::Job> PauseJob(Connection& connection, const std::string& name);
+absl::StatusOr<v1::Job> ResumeJob(Connection& connection, const std::string& name);
 
 // Of an ended job: the server need not keep it.
 absl::Status DeleteJob(Connection& connection, const std::string& name);

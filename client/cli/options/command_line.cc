@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 
+#include "client/cli/formats/enum_names.h"
 #include "client/cli/options/help_texts.h"
 #include "client/cli/options/settings_options.h"
 #include "client/cli/status/exit_code.h"
@@ -107,6 +108,18 @@ void AddSettings(CLI::App& app, Raw& raw) {
   AddThreadsAndSkips(app, settings);
 }
 
+void AddJobClass(CLI::App& command, Raw& raw) {
+  command
+      .add_option_function<std::string>(
+          "--class",
+          [&raw](const std::string& name) {
+            raw.line.job_class = static_cast<v1::JobClass>(*OptionValue(*v1::JobClass_descriptor(), name));
+          },
+          "what the job is for, which decides whose turn it is: interactive (default), graded or regrade")
+      ->check(CLI::IsMember(OptionNames(*v1::JobClass_descriptor())))
+      ->type_name("CLASS");
+}
+
 void AddSceneCommands(CLI::App& app, Raw& raw) {
   for (const char* name : {"render", "submit", "explain"}) {
     const bool render = std::string(name) == "render";
@@ -123,6 +136,7 @@ void AddSceneCommands(CLI::App& app, Raw& raw) {
         ->type_name("WxH");
     AddSettings(command, raw);
     if (render) AddOutputs(command, raw);
+    if (submit) AddJobClass(command, raw);
     AddJson(command, raw, render ? "the result" : submit ? "the job" : "the plan");
     if (render || submit) AddQuiet(command, raw);
     AddServer(command, raw);
@@ -153,11 +167,16 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   AddOutputs(fetch, raw);
   AddJson(fetch, raw, "the result");
   AddQuiet(fetch, raw);
-  CLI::App& cancel = AddCommand(app, "cancel", "stop a job", kJobHelp);
-  AddJob(cancel, raw);
-  AddJson(cancel, raw, "the job");
-  AddQuiet(cancel, raw);
-  for (CLI::App* command : {&watch, &jobs, &show, &fetch, &cancel}) AddServer(*command, raw);
+  for (const auto& [name, what] :
+       {std::pair("cancel", "stop a job"), std::pair("pause", "let a job rest; its time limit rests too"),
+        std::pair("resume", "let a paused job go on")}) {
+    CLI::App& control = AddCommand(app, name, what, kJobHelp);
+    AddJob(control, raw);
+    AddJson(control, raw, "the job");
+    AddQuiet(control, raw);
+    AddServer(control, raw);
+  }
+  for (CLI::App* command : {&watch, &jobs, &show, &fetch}) AddServer(*command, raw);
 }
 
 void AddCompare(CLI::App& app, Raw& raw) {

@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/cli/options/bench_options.h"
+#include "flatlight/v1/render_service.pb.h"
 #include "flatlight/v1/scene.pb.h"
 #include "flatlight/v1/settings.pb.h"
 
@@ -24,7 +25,8 @@ struct CommandLine {
   std::string job;     // JOB as written.
   std::string figure;  // Of `figure`: its name.
   v1::Settings settings;
-  std::vector<v1::Probe> probes;  // Of --picture: in place of the scene's own.
+  v1::JobClass job_class = v1::INTERACTIVE;  // Of `submit`.
+  std::vector<v1::Probe> probes;             // Of --picture: in place of the scene's own.
   std::vector<std::string> outputs;
   std::vector<std::string> results;  // The two files of `compare` and of `bench compare`.
   std::optional<double> tolerance;   // Of `compare`.

@@ -13,7 +13,9 @@ namespace {
 constexpr std::chrono::seconds kPlainInterval{1};
 constexpr const char* kEraseLine = "\r\x1b[K";  // To the first column; erase to the end (ECMA-48, EL).
 
-bool Ended(const v1::Job& job) { return job.state() != v1::Job::QUEUED && job.state() != v1::Job::RUNNING; }
+bool Ended(const v1::Job& job) {
+  return job.state() == v1::Job::SUCCEEDED || job.state() == v1::Job::FAILED || job.state() == v1::Job::CANCELLED;
+}
 
 }  // namespace
 

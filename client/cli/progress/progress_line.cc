@@ -2,6 +2,7 @@
 #include "client/cli/progress/progress_line.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "client/cli/text/numbers.h"
@@ -39,15 +40,29 @@ std::string Details(const v1::Job& job) {
   return text;
 }
 
+std::string QueueText(const v1::Job& job) {
+  if (!job.has_queue()) return "waiting for its turn";
+  std::string text = job.queue().reason() == v1::QueuePlace::OWN_JOBS ? "waiting for jobs of the same owner"
+                                                                      : "waiting: the server is full";
+  text += ", " + (job.queue().ahead() > 0 ? FormatExactly(job.queue().ahead()) + " ahead" : std::string("next"));
+  if (job.queue().has_expected_start()) {
+    const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+    const google::protobuf::Timestamp& start = job.queue().expected_start();
+    const double wait = static_cast<double>(start.seconds()) + 1e-9 * start.nanos() - now.count();
+    text += ", begins in about " + FormatSeconds(std::max(0.0, wait));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string ProgressLine(const v1::Job& job, std::size_t width) {
   const std::string scene = job.scene().empty() ? job.name() : Printable(job.scene());
   if (job.state() == v1::Job::QUEUED) {
-    const std::string line = scene + "  waiting for its turn";
+    const std::string line = scene + "  " + QueueText(job);
     return width == 0 ? line : CutToWidth(line, width);
   }
-  const std::string rest = Percent(job) + Details(job);
+  const std::string rest = Percent(job) + Details(job) + (job.state() == v1::Job::PAUSED ? "  paused" : "");
   if (width == 0) return scene + " " + rest;
   const std::string with_bar = scene + " " + Bar(Fraction(job.progress())) + " " + rest;
   return TextWidth(with_bar) <= width ? with_bar : CutToWidth(scene + " " + rest, width);

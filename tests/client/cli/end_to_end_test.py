@@ -343,6 +343,19 @@ class EndToEnd(PictureReader, unittest.TestCase):
             self.assertIn("cancelled", self.run_cli("cancel", name).stdout)
             self.assertIn("cancelled", self.run_cli("watch", name, status=1).stderr)
 
+    def test_pause_and_resume(self):
+        with Daemon(FLATLIGHTD) as daemon:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            name = self.run_cli("submit", *ENDLESS, "--class", "regrade", "--quiet").stdout.strip()
+            self.assertIn("paused", self.run_cli("pause", name).stdout)
+            shown = json.loads(self.run_cli("show", name, "--json").stdout)
+            self.assertEqual((shown["state"], shown["jobClass"]), ("PAUSED", "REGRADE"))
+            self.assertIn("paused", self.run_cli("jobs").stdout)
+            self.assertIn("running", self.run_cli("resume", name).stdout)
+            self.run_cli("cancel", name)
+            self.assertIn("cannot be paused", self.run_cli("pause", name, status=2).stderr)
+            self.assertIn("regrade", self.run_cli("submit", *ENDLESS, "--class", "urgent", status=2).stderr)
+
     # --- signals
 
     def start(self, *arguments, hang_up=signal.SIG_DFL, **options):

@@ -4,97 +4,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <condition_variable>
 #include <limits>
 #include <new>
 #include <stdexcept>
 
-#include "core/execution/thread_pool.h"
 #include "server/scheduler/metered_executor.h"
 #include "server/store/error.h"
-#include "server/store/memory_job_store.h"
-#include "tests/support/rendering/fake_clock.h"
-#include "tests/support/rendering/fake_rendering.h"
-#include "tests/support/rendering/test_scene.h"
-#include "tests/support/status/status_matchers.h"
+#include "tests/support/scheduler/scheduler_fixture.h"
 
 namespace flatlight {
 namespace {
 
 using ::testing::_;
 using ::testing::ElementsAre;
-using testing::FakeClock;
-using testing::FakeRenderings;
 using ::testing::HasSubstr;
 using testing::IsOk;
 using testing::StatusIs;
 
-constexpr int kSteps = 4;
-
-class SchedulerTest : public ::testing::Test {
- protected:
-  ~SchedulerTest() override { renderings_.Release(); }
-
-  void MakeScheduler(SchedulerOptions options = {}) {
-    scheduler_ = std::make_unique<Scheduler>(
-        options, store_, pool_, clock_,
-        [this](std::shared_ptr<const Scene> scene, const Plan& plan) { return renderings_.Start(scene, plan); },
-        [this](const JobId&) {
-          const std::lock_guard lock(mutex_);
-          changed_.notify_all();
-        });
-  }
-
-  static std::shared_ptr<const Scene> MakeScene(const std::string& name, const std::vector<std::uint32_t>& counts) {
-    SceneDescription description = testing::FloorAndLampDescription(counts);
-    description.name = name;
-    Diagnostics diagnostics;
-    return BuildScene(description, diagnostics);
-  }
-
-  absl::StatusOr<JobRecord> SubmitScene(std::shared_ptr<const Scene> scene,
-                                        const std::optional<RequestKey>& key = std::nullopt) {
-    auto spec = std::make_shared<JobSpec>();
-    spec->id = JobId::Random();
-    spec->scene = std::make_shared<SceneOutline>(*scene);
-    return scheduler_->Submit(spec, std::move(scene), key);
-  }
-
-  JobId Submit(const std::string& name) {
-    const auto job = SubmitScene(MakeScene(name, {8}));
-    EXPECT_THAT(job, IsOk());
-    return job->spec->id;
-  }
-
-  JobState Await(const JobId& id, const std::function<bool(const JobState&)>& condition) {
-    std::unique_lock lock(mutex_);
-    JobState state;
-    changed_.wait(lock, [&] {
-      const auto job = store_.Get(id);
-      EXPECT_THAT(job, IsOk());
-      if (job.ok()) state = *job->state;
-      return !job.ok() || condition(state);
-    });
-    return state;
-  }
-  JobState AwaitPhase(const JobId& id, JobPhase phase) {
-    return Await(id, [=](const JobState& state) { return state.phase == phase; });
-  }
-  JobState AwaitEnd(const JobId& id) {
-    return Await(id, [](const JobState& state) { return HasEnded(state.phase); });
-  }
-
-  // Until all jobs so far are ready for a slice: they are prepared one after the other.
-  void AwaitPreparation() { AwaitPhase(Submit("last"), JobPhase::kRunning); }
-
-  FakeClock clock_;
-  ThreadPool pool_{2};
-  MemoryJobStore store_{{}, clock_};
-  FakeRenderings renderings_{kSteps};
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::unique_ptr<Scheduler> scheduler_;
-};
+using SchedulerTest = testing::SchedulerFixture;
 
 TEST_F(SchedulerTest, RunsAJobToItsEnd) {
   MakeScheduler();

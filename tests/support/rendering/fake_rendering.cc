@@ -2,6 +2,8 @@
 #include "tests/support/rendering/fake_rendering.h"
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 #include <utility>
 
 namespace flatlight::testing {
@@ -58,6 +60,13 @@ void FakeRenderings::Allow(int steps) {
   const std::lock_guard lock(mutex_);
   allowed_ += steps;
   changed_.notify_all();
+}
+
+void FakeRenderings::AllowUntil(const std::atomic<bool>& ended) {
+  while (!ended) {
+    Allow(1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
 }
 
 void FakeRenderings::Release() {

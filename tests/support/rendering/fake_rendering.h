@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_TESTS_SUPPORT_RENDERING_FAKE_RENDERING_H_
 #define FLATLIGHT_TESTS_SUPPORT_RENDERING_FAKE_RENDERING_H_
 
+#include <atomic>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -24,6 +25,8 @@ class FakeRenderings {
   explicit FakeRenderings(int total_steps) : total_(total_steps) {}
   void set_on_step(OnStep on_step) { on_step_ = std::move(on_step); }
 
+  void set_total_steps(int total_steps) { total_ = total_steps; }
+
   // For the scheduler.
   std::unique_ptr<Rendering> Start(std::shared_ptr<const Scene> scene, const Plan& plan);
 
@@ -31,6 +34,8 @@ class FakeRenderings {
   void Hold();
   void Allow(int steps);
   void Release();
+  // While held: allows one step after another until `ended`, so that slices that are under way come to their end.
+  void AllowUntil(const std::atomic<bool>& ended);
 
   // Scenes by name, in the order of their slices.
   std::vector<std::string> slices() const;
@@ -40,7 +45,7 @@ class FakeRenderings {
   // Returns whether a step may be taken; not if cancelled meanwhile.
   bool TakeStep(const std::string& scene, const Cancellation& cancellation);
 
-  const int total_;
+  int total_;
   OnStep on_step_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_SCHEDULER_JOB_RUN_H_
+#define FLATLIGHT_SERVER_SCHEDULER_JOB_RUN_H_
+
+#include <cstdint>
+#include <memory>
+
+#include "absl/status/status.h"
+#include "core/execution/cancellation.h"
+#include "core/execution/clock.h"
+#include "core/render/rendering.h"
+#include "core/scene/scene.h"
+#include "server/scheduler/fair_queue.h"
+#include "server/scheduler/stopwatch.h"
+#include "server/store/job.h"
+
+namespace flatlight {
+
+// A job that has not ended, as the scheduler sees it. Guarded by the scheduler's mutex, but for what is said otherwise.
+struct JobRun {
+  enum class Stage : std::uint8_t {
+    kWaiting,    // For a place; in `waiting_`, unless it is paused.
+    kPreparing,  // Its index is made, or it waits for that.
+    kReady,      // For a slice; in `ready_` or `urgent_`, unless it is paused.
+    kSlicing,
+    kEnded
+  };
+
+  explicit JobRun(const Clock& clock) : stopwatch(clock) {}
+
+  bool has_place() const { return stage != Stage::kWaiting && stage != Stage::kEnded; }
+  // Where it stands in the queue for slices.
+  FairQueue<std::shared_ptr<JobRun>>::Place Turn() const {
+    return {spec->job_class, spec->owner, state.field == nullptr};
+  }
+  // Where it stands in the queues for a place and for its preparation.
+  FairQueue<std::shared_ptr<JobRun>>::Place Entry() const { return {spec->job_class, spec->owner}; }
+
+  std::shared_ptr<const JobSpec> spec;  // Never changes.
+  std::shared_ptr<const Scene> scene;   // Until it is prepared.
+  Cancellation cancellation;
+  Stage stage = Stage::kWaiting;
+  bool pause_wanted = false;             // Of a slice under way: by its end.
+  JobState state;                        // Published last. In stage kSlicing nobody but the runner writes it.
+  std::unique_ptr<Rendering> rendering;  // In stage kSlicing the runner's alone.
+  Stopwatch stopwatch;                   // Stands still while the job is paused.
+  Clock::Time started;                   // On the stopwatch.
+  Clock::Time published;
+  // Both the runner's alone.
+  Clock::Duration snapshot_cost{0};
+  absl::Status failure;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SCHEDULER_JOB_RUN_H_

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scheduler's own threads: preparation and slices.
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <utility>
+
+#include "server/scheduler/field_check.h"
+#include "server/scheduler/field_versions.h"
+#include "server/scheduler/metered_executor.h"
+#include "server/scheduler/scheduler.h"
+#include "server/store/error.h"
+
+namespace flatlight {
+namespace {
+
+// A snapshot may take at most this part of a job's time.
+constexpr int kSnapshotShare = 10;
+
+absl::Status WhatFailed() {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    return MakeError(absl::StatusCode::kResourceExhausted, "OUT_OF_MEMORY",
+                     "the job needs more memory than the server has");
+  } catch (const std::exception& failure) {
+    return MakeError(absl::StatusCode::kInternal, "RENDERING_FAILED", failure.what());
+  }
+}
+
+}  // namespace
+
+void Scheduler::PrepareNext() {
+  RunPtr run;
+  std::shared_ptr<const Scene> scene;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto next = preparing_.Pop([&](const std::string& user) { return std::optional(accounts_.RankOf(user)); });
+    if (!next) return;
+    run = *next;
+    if (run->stage == JobRun::Stage::kEnded) return;
+    accounts_.Serve(run->spec->owner);
+    scene = std::move(run->scene);
+    run->started = run->stopwatch.Now();
+    run->state.start_time = std::chrono::system_clock::now();
+    if (run->state.phase != JobPhase::kPaused) run->state.phase = JobPhase::kRunning;
+    Publish(*run);
+  }
+  TellListener();
+  const std::int64_t cpu_start = ThreadCpuNanoseconds();
+  std::unique_ptr<Rendering> rendering;
+  absl::Status failure;
+  try {
+    rendering = start_(std::move(scene), run->spec->plan);
+  } catch (...) {
+    failure = WhatFailed();
+  }
+  const double cpu_seconds = static_cast<double>(ThreadCpuNanoseconds() - cpu_start) * 1e-9;
+  {
+    const std::lock_guard lock(mutex_);
+    accounts_.Charge(run->spec->owner, cpu_seconds);
+    if (run->stage == JobRun::Stage::kEnded) return;
+    run->state.cpu_seconds += cpu_seconds;
+    run->rendering = std::move(rendering);
+    if (!failure.ok()) {
+      run->state.error = failure;
+      End(*run, JobPhase::kFailed);
+    } else {
+      Requeue(run);
+    }
+  }
+  TellListener();
+}
+
+void Scheduler::Requeue(const RunPtr& run) {
+  run->stage = JobRun::Stage::kReady;
+  if (run->cancellation.cancelled()) {
+    urgent_.push_back(run);
+  } else if (run->state.phase != JobPhase::kPaused) {
+    ready_.Push(run->Turn(), run);
+  }
+  ready_changed_.notify_one();
+}
+
+Scheduler::RunPtr Scheduler::NextReady() {
+  if (!urgent_.empty()) {
+    RunPtr run = std::move(urgent_.front());
+    urgent_.pop_front();
+    return run;
+  }
+  return ready_.Pop([&](const std::string& user) { return std::optional(accounts_.RankOf(user)); }).value_or(nullptr);
+}
+
+void Scheduler::RunSlices() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    RunPtr run = NextReady();
+    if (run == nullptr) {
+      if (stopping_ && runs_.empty()) return;
+      ready_changed_.wait(lock);
+      continue;
+    }
+    run->stage = JobRun::Stage::kSlicing;
+    accounts_.Serve(run->spec->owner);
+    lock.unlock();
+    RunSlice(*run);
+    lock.lock();
+    if (run->stage == JobRun::Stage::kSlicing) {
+      if (run->pause_wanted && !run->cancellation.cancelled()) EnterPause(*run);
+      Requeue(run);
+    }
+    run->pause_wanted = false;
+    run_stopped_.notify_all();
+    lock.unlock();
+    TellListener();
+    run.reset();
+    lock.lock();
+  }
+}
+
+void Scheduler::RunSlice(JobRun& run) {
+  MeteredExecutor executor(executor_);
+  const bool first = run.state.field == nullptr;
+  JobState next = run.state;
+  bool publish = false;
+  bool done = false;
+  try {
+    Rendering& rendering = *run.rendering;
+    if (!run.cancellation.cancelled()) {
+      rendering.Advance(executor, run.cancellation, run.stopwatch, first ? options_.first_slice : options_.slice);
+    }
+    done = rendering.done();
+    next.progress = rendering.Progress();
+    const bool has_picture = done || next.progress.fraction > 0 || next.progress.samples > 0;
+    const Clock::Time now = clock_.Now();
+    const Clock::Duration interval = std::max(options_.publish_interval, kSnapshotShare * run.snapshot_cost);
+    publish = done || run.cancellation.cancelled() || (first && has_picture) || now - run.published >= interval;
+    if (publish && has_picture) {
+      next.field = rendering.Snapshot();
+      run.failure = CheckFinite(*run.spec->scene, *next.field);
+      next.versions = StampVersions(*run.spec->scene, run.state.field.get(), run.state.versions, *next.field,
+                                    run.state.sequence + 1);
+      run.snapshot_cost = clock_.Now() - now;
+    }
+    if (done) next.end_reason = rendering.end_reason();
+  } catch (...) {
+    run.failure = WhatFailed();
+  }
+  const double cpu_seconds = executor.CpuSeconds();
+  next.cpu_seconds += cpu_seconds;
+
+  std::unique_ptr<Rendering> finished;  // Destroyed without the lock.
+  const std::lock_guard lock(mutex_);
+  accounts_.Charge(run.spec->owner, cpu_seconds);
+  if (!run.failure.ok()) {
+    run.state.cpu_seconds = next.cpu_seconds;
+    run.state.error = run.failure;
+    End(run, JobPhase::kFailed);
+  } else if (done || run.cancellation.cancelled()) {
+    run.state = std::move(next);
+    End(run, done ? JobPhase::kSucceeded : JobPhase::kCancelled);
+  } else if (publish) {
+    run.state = std::move(next);
+    Publish(run);
+  } else {
+    run.state.cpu_seconds = next.cpu_seconds;
+  }
+  if (run.stage == JobRun::Stage::kEnded) finished = std::move(run.rendering);
+}
+
+}  // namespace flatlight

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pausing, resuming and the class of a job, over loopback.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "tests/support/loopback/loopback_server.h"
+#include "tests/support/rendering/fake_rendering.h"
+
+namespace flatlight {
+namespace {
+
+using testing::FakeRenderings;
+using testing::FloorAndLampProto;
+using testing::LoopbackServer;
+using testing::ReasonOf;
+using testing::TestContext;
+
+constexpr auto FAILED_PRECONDITION = grpc::StatusCode::FAILED_PRECONDITION;
+constexpr auto INVALID_ARGUMENT = grpc::StatusCode::INVALID_ARGUMENT;
+
+class ControlTest : public ::testing::Test {
+ protected:
+  ~ControlTest() override { renderings_.Release(); }
+
+  ServerOptions Options() {
+    ServerOptions options;
+    options.start_rendering = [this](std::shared_ptr<const Scene> scene, const Plan& plan) {
+      return renderings_.Start(scene, plan);
+    };
+    return options;
+  }
+  static v1::CreateJobRequest NewJob(v1::JobClass job_class) {
+    v1::CreateJobRequest request;
+    *request.mutable_scene()->mutable_scene() = FloorAndLampProto({10});
+    request.mutable_settings()->set_method(v1::Settings::PATH_TRACING);
+    request.set_job_class(job_class);
+    return request;
+  }
+
+  FakeRenderings renderings_{1000};
+};
+
+TEST_F(ControlTest, AJobRestsAndGoesOn) {
+  LoopbackServer server(Options());
+  renderings_.Hold();
+  v1::Job job;
+  TestContext creating;
+  ASSERT_TRUE(server.render().CreateJob(&creating, NewJob(v1::GRADED), &job).ok());
+  EXPECT_EQ(job.job_class(), v1::GRADED);
+  v1::PauseJobRequest pause;
+  pause.set_name(job.name());
+  std::atomic<bool> paused = false;
+  std::thread allow([&] { renderings_.AllowUntil(paused); });
+  TestContext pausing;
+  EXPECT_TRUE(server.render().PauseJob(&pausing, pause, &job).ok());
+  paused = true;
+  allow.join();
+  EXPECT_EQ(job.state(), v1::Job::PAUSED);
+  renderings_.Release();
+  v1::ResumeJobRequest resume;
+  resume.set_name(job.name());
+  TestContext resuming;
+  EXPECT_TRUE(server.render().ResumeJob(&resuming, resume, &job).ok());
+  v1::WatchJobRequest request;
+  request.set_name(job.name());
+  TestContext watching;
+  const auto reader = server.render().WatchJob(&watching, request);
+  v1::WatchJobResponse last;
+  for (v1::WatchJobResponse message; reader->Read(&message);) last = message;
+  EXPECT_TRUE(reader->Finish().ok());
+  EXPECT_EQ(last.job().state(), v1::Job::SUCCEEDED);
+  TestContext again;
+  const grpc::Status status = server.render().PauseJob(&again, pause, &job);
+  EXPECT_EQ(status.error_code(), FAILED_PRECONDITION);
+  EXPECT_EQ(ReasonOf(status), "JOB_ENDED");
+}
+
+TEST_F(ControlTest, AnUnknownClassIsRefused) {
+  LoopbackServer server(Options());
+  v1::Job job;
+  TestContext context;
+  const grpc::Status status = server.render().CreateJob(&context, NewJob(static_cast<v1::JobClass>(17)), &job);
+  EXPECT_EQ(status.error_code(), INVALID_ARGUMENT);
+  EXPECT_NE(status.error_message().find("allowed: INTERACTIVE, GRADED, REGRADE"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace flatlight
