@@ -265,7 +265,7 @@ void Scheduler::Stop() {
       std::vector<RunPtr> runs;
       for (const auto& [id, run] : runs_) runs.push_back(run);
       // Those that wait first, lest each that ends lets one of them in.
-      std::ranges::partition(runs, [](const RunPtr& run) { return run->stage == JobRun::Stage::kWaiting; });
+      std::partition(runs.begin(), runs.end(), [](const RunPtr& run) { return run->stage == JobRun::Stage::kWaiting; });
       for (const RunPtr& run : runs) RequestCancel(run);
     }
   }

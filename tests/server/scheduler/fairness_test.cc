@@ -58,8 +58,10 @@ TEST_F(FairnessTest, PlacesAreLeftForWhoComes) {
   options.max_running_jobs = 8;
   MakeScheduler(options);
   renderings_.Hold();
+  constexpr int kJobs = 20;
   std::vector<JobId> ada;
-  for (int i = 0; i < 20; ++i) ada.push_back(Submit("many", "ada"));
+  ada.reserve(kJobs);
+  for (int i = 0; i < kJobs; ++i) ada.push_back(Submit("many", "ada"));
   AwaitPhase(ada[3], JobPhase::kRunning);
   EXPECT_EQ(store_.Get(ada[4])->state->phase, JobPhase::kQueued);
   AwaitPhase(Submit("one", "bob"), JobPhase::kRunning);
