@@ -154,8 +154,10 @@ Envelope::Nearer Envelope::CompareAt(const Sight& sight, const Sight& other, con
   if (std::abs(difference) > kCertain * doubt) return difference > 0 ? Nearer::kYes : Nearer::kNo;
   if (std::abs(difference) > doubt) return Nearer::kDoubt;
   // They meet in this direction: at the place that the end stands for, or it is not the end between them.
-  const bool here = at.kind == SightEnd::Kind::kHorizon ||
-                    std::abs(cross - sight.area) <= kCertain * (Reach(at) * sight.along_doubt + sight.area_doubt);
+  const auto is_here = [&](const Sight& on, double along) {
+    return std::abs(along - on.area) <= kCertain * (Reach(at) * on.along_doubt + on.area_doubt);
+  };
+  const bool here = at.kind == SightEnd::Kind::kHorizon || (is_here(sight, cross) && is_here(other, other_cross));
   if (!here) return Nearer::kDoubt;
   // Which of two that meet at a small angle is in front depends on rounding for some way.
   const double turn = sight.along_normal * other.along_tangent - sight.along_tangent * other.along_normal;

@@ -33,6 +33,7 @@ class PartBuilder {
     const bool own =
         receiver_.element != ElementId::kNone && scene_.element(receiver_.element).carrier == element_.carrier;
     const bool own_run = InOwnRun();
+    if (!own && BuildCorner()) return parts_;
     if (!own && !own_run && MayTouch() && TouchesReceiver(scene_, element_, receiver_))
       return TouchingParts(scene_, id_, receiver_);
     if (element_.kind == Element::Kind::kSegment) {
@@ -50,6 +51,26 @@ class PartBuilder {
   }
 
  private:
+  // A straight element that has an end in common with the receiver's own, which is straight too. They meet nowhere
+  // else: however near to it the receiver is, the corner's turn tells on which side of it.
+  bool BuildCorner() {
+    if (receiver_.element == ElementId::kNone || element_.kind != Element::Kind::kSegment) return false;
+    const Element& own = scene_.element(receiver_.element);
+    if (own.kind != Element::Kind::kSegment) return false;
+    const bool at_a = element_.a == own.a || element_.a == own.b;
+    if (!at_a && element_.b != own.a && element_.b != own.b) return false;
+    const Point2 corner = at_a ? element_.a : element_.b, end = at_a ? element_.b : element_.a;
+    if (IsOwnPlace(corner)) return false;
+    const double height = Dot(receiver_.normal, end - corner);
+    if (std::abs(height) <= scene_.touch_distance()) return false;
+    const Edge begins = HorizonEdge(Dot(receiver_.tangent, corner - receiver_.position) > 0 ? 1 : -1);
+    if (height < 0) return true;
+    Edge ends = VertexEdge(receiver_, end);
+    if (!Above(ends)) return false;
+    AddAbove(Part::Kind::kStraight, at_a ? begins : ends, at_a ? ends : begins);
+    return true;
+  }
+
   // False where that is plain at little cost.
   bool MayTouch() const {
     if (element_.kind == Element::Kind::kSegment) return true;

@@ -269,6 +269,41 @@ TEST(DegenerateTest, ATinyCircleAndAWallThatTouchesIt) {
   ExpectTrue(scene, 1e-13);
 }
 
+// A point 2e-8 before the apex, where its own side of the hairpin and the other are 2e-15 apart: inside it sees nothing
+// but the other, outside all but that.
+TEST(DegenerateTest, APointInsideTheApexOfAHairpin) {
+  for (const Side side : {Side::kFront, Side::kBack}) {
+    SceneDescription scene = EmptyScene();
+    AddCurve(scene,
+             PolylineDescription{
+                 {{-0.700860585, -0.2255476997}, {0.2505779863, -0.4325933116}, {-0.7008605598, -0.2255477869}}, false},
+             1, true);
+    Probe(scene, 0, 0, 1, side);
+    const WorldValue value = ValueOf(scene);
+    // But for the square of the angle.
+    EXPECT_NEAR(value.irradiance, side == Side::kBack ? 2 : 0, value.irradiance_error + 5e-15);
+    EXPECT_LE(value.irradiance_error, 1e-14);
+  }
+}
+
+// Before the apex of a hairpin the mouth is closed by a lamp that crosses one side a little before its end: light ends
+// where it crosses, in whatever order they are found.
+TEST(DegenerateTest, TheEndOfAWallSeenAllButEdgeOnBehindALamp) {
+  const SegmentDescription lamp{{-0.67714, -0.958565}, {0.951979, -0.772956}};
+  const PolylineDescription hairpin{{{0.31947, -0.890937}, {0.591467, 0.665443}, {0.31947, -0.890938}}, false};
+  for (const bool lamp_first : {true, false}) {
+    SceneDescription scene = EmptyScene();
+    if (lamp_first) AddCurve(scene, lamp, 1);
+    AddCurve(scene, hairpin);
+    if (!lamp_first) AddCurve(scene, lamp, 1);
+    Probe(scene, lamp_first ? 1 : 0, 0, 1, Side::kBack);
+    const WorldValue value = ValueOf(scene);
+    // By 40 digits.
+    EXPECT_NEAR(value.irradiance, 5.936138748e-15, value.irradiance_error);
+    EXPECT_NEAR(value.gradient, 7.747468259e-15, 1e-23);
+  }
+}
+
 // In line with a crossing, and with the end of a wall upon it, there is another end, far behind: light begins at the
 // crossing, and moves with it.
 TEST(DegenerateTest, AnEndInLineWithACrossingIsNotWhereLightBegins) {
