@@ -77,6 +77,16 @@ bool IsAmbiguous(const Built& built, std::size_t i, double rounding, bool revers
   return !MovedOnward(built, receiver).clear;
 }
 
+// Whether curves lie on others or on themselves, so that pieces of them were left out.
+bool AnyIsCut(const Scene& scene) {
+  for (const Curve& curve : scene.curves()) {
+    double length = 0;
+    for (std::uint32_t e = 0; e < curve.element_count; ++e) length += scene.elements()[curve.first_element + e].length;
+    if (length < curve.length * (1 - 1e-12)) return true;
+  }
+  return false;
+}
+
 // Values of one scene against those of another form of it. At events only irradiance is compared.
 Failure Compare(const std::string& name, const Built& a, const Built& b, const Comparison& how, Tally& tally) {
   const std::vector<ExactValue> values = SolveExact(a), others = SolveExact(b);
@@ -205,7 +215,7 @@ Failure CheckSimilarity(const SceneDescription& description, std::uint64_t seed,
   similarity.scale = random.Size(-9, 9);
   similarity.angle = random.Chance(0.8) ? random.Angle() : 0;
   // A curve that doubles back lies on itself, and mirrored begins with its other side.
-  similarity.mirrored = random.Chance(0.3) && !HasOverlaps(description);
+  similarity.mirrored = random.Chance(0.3) && !HasOverlaps(description) && !AnyIsCut(*built.scene);
   if (random.Chance(0.7)) {
     const double far = random.Chance(0.3) ? random.Size(0, 6) : random.Uniform(0, 3);
     similarity.shift = similarity.scale * far * random.Direction();
