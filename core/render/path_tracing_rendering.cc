@@ -27,7 +27,9 @@ class PathSampler final : public PointSampler {
         sights_(scene_->traits().probe_points),
         seed_(seed) {
     for (const Receiver* point : PointsOfProbes(*scene_)) {
-      points_.push_back(MovedOnward(*point, *caster_));
+      const OnwardPoint onward = MovedOnward(*point, *caster_);
+      points_.push_back(onward.receiver);
+      missed_.push_back(MissedAtHorizon(onward, *scene_));
     }
   }
 
@@ -37,7 +39,8 @@ class PathSampler final : public PointSampler {
     const EmitterSight sight = SightFrom(point);
     const Spectrum step = tracer_.DirectStep(points_[point], sight);
     const Spectrum bright = tracer_.BrightestReflection();
-    const Spectrum rounding = tracer_.DirectRounding(points_[point], sight);
+    const Spectrum rounding =
+        tracer_.DirectRounding(points_[point], sight) + missed_[point] * tracer_.BrightestEmission();
     for (std::size_t c = 0; c < doubts.size(); ++c) doubts[c] = {step.value[c], bright.value[c], rounding.value[c]};
   }
 
@@ -77,6 +80,7 @@ class PathSampler final : public PointSampler {
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const RayCaster> caster_;
   std::vector<Receiver> points_;
+  std::vector<double> missed_;  // By point: MissedAtHorizon.
   PathTracer tracer_;
   EmitterSightMemory sights_;  // By point.
   std::uint32_t seed_;

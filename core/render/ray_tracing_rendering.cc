@@ -77,7 +77,7 @@ RayTracingRendering::RayTracingRendering(std::shared_ptr<const Scene> scene, std
   options.end_black_paths = plan.Takes(skip::kBlackPaths);
   ExactOptions exact;
   exact.derivatives = orders_ - 1;
-  for (const Receiver* point : PointsOfProbes(*scene_)) points_.push_back(MovedOnward(*point, *caster));
+  for (const Receiver* point : PointsOfProbes(*scene_)) points_.push_back(MovedOnward(*point, *caster).receiver);
   tree_.emplace(std::move(caster), options);
   if (scene_->traits().lights > 0) lights_.emplace(tree_->caster(), exact);
   BeginPass(last_rays_ > 0 ? std::min(kFirstRays, last_rays_) : kFirstRays);

@@ -64,11 +64,13 @@ class EmitterSampler {
     // Irradiance from the emitters whose way is clear: radiance times the difference of sines.
     const Spectrum& certain() const { return certain_; }
     bool any_certain() const { return certain_pieces_ != 0; }
-    // Calls visit(point) for a point of each of these emitters, chosen by the same number for all.
+    // Calls visit(point, light) for a point of each of these emitters, chosen by the same number for all, and its part
+    // of certain().
     template <typename Visit>
     void VisitCertain(double u, Visit visit) const {
       for (std::uint32_t i = 0; (certain_pieces_ >> i) != 0; ++i) {
-        if (((certain_pieces_ >> i) & 1) != 0) visit(PlaceOn(i, u));
+        if (((certain_pieces_ >> i) & 1) != 0)
+          visit(PlaceOn(i, u), seen_[i].range.width * sampler_.pieces_[i].radiance);
       }
     }
     // Emitter sampling alone has no more variance than cosine sampling alone: rays that hit an emitter by chance need

@@ -56,13 +56,15 @@ PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracin
 }
 
 Spectrum PathTracer::DirectStep(const Receiver& receiver, const EmitterSight& sight) const {
-  if (receiver.half_angle > 0) {
-    Spectrum brightest = scene_.environment();
-    for (const Curve& curve : scene_.curves())
-      for (int c = 0; c < kMaxChannels; ++c) brightest[c] = std::max(brightest[c], curve.radiance[c]);
-    return brightest;
-  }
+  if (receiver.half_angle > 0) return BrightestEmission();
   return options_.nothing_blocks ? Spectrum{} : emitters_.Unblocked(VertexAt(scene_, receiver), sight);
+}
+
+Spectrum PathTracer::BrightestEmission() const {
+  Spectrum brightest = scene_.environment();
+  for (const Curve& curve : scene_.curves())
+    for (int c = 0; c < kMaxChannels; ++c) brightest[c] = std::max(brightest[c], curve.radiance[c]);
+  return brightest;
 }
 
 Spectrum PathTracer::BrightestReflection() const {

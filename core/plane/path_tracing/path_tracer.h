@@ -76,6 +76,8 @@ class PathTracer {
   // What the emitters that may be blocked or not would give the receiver if nothing blocked them: the most by which
   // finding a ray blocked or not can change a sample of direct light.
   Spectrum DirectStep(const Receiver& receiver, const EmitterSight& sight) const;
+  // In any direction.
+  Spectrum BrightestEmission() const;
   // What a path adds that finds the brightest place there may be after one reflection: one in the full light of the
   // brightest emitter, on the curve that reflects most.
   Spectrum BrightestReflection() const;

@@ -83,14 +83,14 @@ class PathWalk {
 
   void GatherCertain(const EmitterSampler::View& view, double u) {
     if (!view.any_certain()) return;
-    bool proved = true;
-    if (!tracer_.options_.leave_out_shadow_rays) {
-      view.VisitCertain(u, [&](const SurfacePoint& point) {
-        ++rays_;
-        proved = proved && tracer_.caster_->Visible(vertex_.at, point);
-      });
-    }
-    if (proved) Add(1, view.certain());
+    if (tracer_.options_.leave_out_shadow_rays) return Add(1, view.certain());
+    // One by one: the sines of a piece at the horizon may be too close for a ray to tell.
+    Spectrum proved;
+    view.VisitCertain(u, [&](const SurfacePoint& point, const Spectrum& light) {
+      ++rays_;
+      if (tracer_.caster_->Visible(vertex_.at, point)) proved = proved + light;
+    });
+    Add(1, proved);
   }
 
   // What part of light from a direction goes the path's way: the cosine, or the BRDF and the cosine.

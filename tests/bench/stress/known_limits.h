@@ -19,7 +19,6 @@ struct KnownLimit {
 // side.
 inline constexpr KnownLimit kKnownLimits[] = {
     {"corners", "similarity", 0.004, "points that rounding puts on another side of walls nearer than what they touch"},
-    {"corners", "rays", 0.0005, "points at the apex of a hairpin of 1e-7, on one of its sides or beyond it"},
     {"junctions", "similarity", 0.001,
      "points that rounding puts on another side of walls nearer than what they touch"},
     {"tangents", "similarity", 0.001, "points that rounding puts on another side of walls nearer than what they touch"},
@@ -37,7 +36,7 @@ inline constexpr KnownLimit kKnownLimits[] = {
     {"nested", "oracle", 0.01, "full circles close to rounding, for the oracle: light of 1e-15 comes through"},
     {"arcs", "rays", 0.0005, "arcs of 1e-11: which side is seen is below rounding"},
     {"slivers", "rays", 0.0005, "points in corners of 1e-3: rays start farther on, where they see 1e-8 more or less"},
-    {"slivers", "sampling", 0.002, "lamps nearer than 1e-9 to both sides of a wall: path tracing misses them"},
+    {"slivers", "sampling", 0.0001, "free points where walls cross at 1e-6: which wall they are lifted off"},
     {"grazing", "rays", 0.0005, "light of 1e-22 at the horizon, where coordinates tell nothing"},
 };
 

@@ -211,5 +211,16 @@ TEST(HonestRenderingTest, ALampThroughThePointIsNotTakenForUnseen) {
   EXPECT_NEAR(field.irradiance[0], 1, 1e-9);
 }
 
+// At the crest of a ridge a lamp so low on the horizon that rays to it pass the crest nearer than curves that touch:
+// they miss it, and say so.
+TEST(HonestRenderingTest, WhatRaysMissAtTheHorizonOfACornerIsStated) {
+  SceneMaker maker;
+  maker.Polyline("ridge", {{-0.8, -0.6}, {0, 0}, {1, 0}}, false).Probe("ridge", 1);
+  maker.Segment("lamp", {-1, 5e-4}, {-1, 0}, {.radiance = {1}});
+  const ProbeField field = Render(maker.Build(), Sampled(1024)).field->probes[0];
+  EXPECT_NEAR(field.irradiance[0], 1.25e-7, 6 * field.standard_error[0]);
+  EXPECT_LT(field.standard_error[0], 1e-6);
+}
+
 }  // namespace
 }  // namespace flatlight

@@ -108,5 +108,28 @@ TEST(DirectLightTest, FromItsChordAnArcIsAllThereIs) {
   }
 }
 
+// A sliver of a lamp around the wall, within 1e-9 of both of its sides: one side of the sliver fills all that the point
+// sees, the end and the other side lie at the horizon, in directions whose sines are one number.
+TEST(DirectLightTest, ALampWithinAtomsOfBothSidesOfAWall) {
+  SceneMaker maker;
+  maker.Segment("wall", {0.9047148973282422, -0.04535382662716032}, {0.12914159131129976, 0.06568286175296961})
+      .Polyline("sliver",
+                {{0.980266014793399, -0.056170272},
+                 {0.06570422785949415, 0.0747650146171},
+                 {0.0657042278019, 0.074765014},
+                 {0.980266014736, -0.056170272}},
+                false, {.radiance = {1}})
+      .Probe("wall", 2, Side::kBack);
+  const std::shared_ptr<const Scene> scene = maker.Build();
+  const auto caster = std::make_shared<const RayCaster>(scene);
+  for (const bool leave_out_shadow_rays : {false, true}) {
+    PathTracingOptions options;
+    options.max_bounces = 0;
+    options.leave_out_shadow_rays = leave_out_shadow_rays;
+    const PathTracer tracer(caster, options);
+    EXPECT_NEAR(Trace(tracer, *scene, scene->probes()[0].receivers[1], 5, 0, 64, 1).mean, 2, 1e-14);
+  }
+}
+
 }  // namespace
 }  // namespace flatlight
