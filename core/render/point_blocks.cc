@@ -75,19 +75,23 @@ bool PointBlocks::Advance(Executor& executor, int max_threads, const Cancellatio
     const double rounds = std::clamp(fitting, 1.0, seconds_per_block_ > 0 ? kShardsPerThread : 1.0);
     const auto wanted = static_cast<std::size_t>(std::floor(rounds) * threads);
     std::vector<Shard> shards;
-    double cut = 0;
     while (shards.size() < wanted) {
       Shard shard = CutShard(cursor);
       if (shard.pieces.empty()) break;
-      for (const Piece& piece : shard.pieces) cut += std::ldexp(1.0, static_cast<int>(piece.level));
       shards.push_back(std::move(shard));
     }
     if (shards.empty()) return true;
-    executor.ParallelFor(shards.size(), threads, [&](std::size_t i) { Work(shards[i], cancellation); });
-    if (!Merge(shards)) return false;
+    // They may take longer than was measured: those whose turn comes too late are left.
+    executor.ParallelFor(shards.size(), threads, [&](std::size_t i) {
+      if (i == 0 || clock.Now() < until) Work(shards[i], cancellation);
+    });
+    const double blocks_before = total_blocks_;
+    const bool all = Merge(shards);
+    const double done = total_blocks_ - blocks_before;
     const Clock::Time after = clock.Now();
     const double used_threads = std::min(static_cast<double>(threads), static_cast<double>(shards.size()));
-    seconds_per_block_ = Seconds(after - now).count() * used_threads / cut;
+    if (done > 0) seconds_per_block_ = Seconds(after - now).count() * used_threads / done;
+    if (!all) return false;
     // Grow by steps: a first measurement of tiny shards is mostly overhead.
     const double best = seconds_per_block_ > 0 ? kShardSeconds / seconds_per_block_ : kMostBlocksPerShard;
     blocks_per_shard_ = std::clamp(std::min(best, 4 * blocks_per_shard_), 1.0, kMostBlocksPerShard);

@@ -50,13 +50,31 @@ void ProgressiveSampling::Advance(Executor& executor, int max_threads, const Can
     PlanRound(now_);
   }
   while (!done() && !cancellation.cancelled()) {
-    const bool round_done = blocks_.Advance(executor, max_threads, cancellation, clock, until) &&
-                            (!unread_ || unread_->Advance(executor, max_threads, cancellation, clock, until));
+    const Clock::Time stop = std::min(until, TimeLimit());
+    const bool round_done = blocks_.Advance(executor, max_threads, cancellation, clock, stop) &&
+                            (!unread_ || unread_->Advance(executor, max_threads, cancellation, clock, stop));
     now_ = clock.Now();
-    if (!round_done) return;
+    if (!round_done) {
+      if (now_ >= TimeLimit()) EndInRound();
+      return;
+    }
     EndRound(now_);
     if (now_ >= until) return;
   }
+}
+
+Clock::Time ProgressiveSampling::TimeLimit() const {
+  constexpr double kForever = 1e9;  // s
+  if (!goal_.time_limit.has_value() || *goal_.time_limit > kForever) return Clock::Time::max();
+  return Later(*start_, std::chrono::duration_cast<Clock::Duration>(Seconds(*goal_.time_limit)));
+}
+
+// Rounds are planned to end before the time does, but for the first one, and where blocks take longer and longer.
+void ProgressiveSampling::EndInRound() {
+  end_reason_ = EndReason::kTimeLimit;
+  for (std::size_t point = 0; point < blocks_.points(); ++point)
+    if (blocks_.blocks(point) == 0) return;
+  UpdateWorstError();
 }
 
 void ProgressiveSampling::EndRound(Clock::Time now) {

@@ -59,6 +59,9 @@ class ProgressiveSampling {
   // Means of values over each probe, channel after channel.
   using ProbeMeans = std::vector<double>;
 
+  // When the time limit is over; Time::max() if there is none.
+  Clock::Time TimeLimit() const;
+  void EndInRound();
   void EndRound(Clock::Time now);
   void OfferHalves();
   // Reopens decided points whose own error misses the target. True if all points are decided and none was reopened.

@@ -3,6 +3,7 @@
 
 #include <google/protobuf/repeated_field.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "core/math/check.h"
@@ -90,6 +91,10 @@ v1::RenderResult ResultToProto(const SceneOutline& scene, const Field& field) {
     FillProbeGeometry(scene, probe, 0, count, out);
     FillProbeValues(field, scene.channels, probe, 0, count, out);
   }
+  double unsampled = 0;
+  for (const ProbeField& probe : field.probes)
+    unsampled += static_cast<double>(std::count(probe.samples.begin(), probe.samples.end(), 0.0));
+  if (unsampled > 0) result.mutable_statistics()->set_unsampled_points(unsampled);
   if (!field.records.empty()) result.mutable_statistics()->set_records(static_cast<double>(field.records.size()));
   for (const RecordField& record : field.records) {
     v1::CacheRecord& out = *result.add_records();

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "client/cli/formats/result_columns.h"
 #include "client/cli/text/numbers.h"
 #include "client/cli/text/text_table.h"
 
@@ -20,9 +21,22 @@ std::string QuantityName(const v1::ProbeResult& probe) {
 
 std::string RangeText(const v1::ProbeResult& probe) {
   if (probe.irradiance().empty()) return "no points";
-  const auto [low, high] = std::minmax_element(probe.irradiance().begin(), probe.irradiance().end());
+  const int channels = static_cast<int>(probe.channels());
+  std::optional<double> low, high;
+  for (int i = 0; i < probe.irradiance_size(); ++i) {
+    if (!IsKnown(probe, i / channels)) continue;
+    low = std::min(low.value_or(probe.irradiance(i)), probe.irradiance(i));
+    high = std::max(high.value_or(probe.irradiance(i)), probe.irradiance(i));
+  }
+  if (!low) return "unknown";
   return FormatValue(*low) + (*low == *high ? "" : " to " + FormatValue(*high)) +
          (probe.quantity() == v1::ProbeResult::RADIANCE ? " W/(rad m)" : " W/m");
+}
+
+int KnownPoints(const v1::ProbeResult& probe) {
+  int known = 0;
+  for (int point = 0; point < static_cast<int>(probe.count()); ++point) known += IsKnown(probe, point) ? 1 : 0;
+  return known;
 }
 
 // Largest error / max(irradiance, 1 % of the probe's mean), as target_error has it; absent if there are none.
@@ -31,8 +45,10 @@ std::optional<double> LargestRelativeError(const v1::ProbeResult& probe,
   if (errors.empty()) return std::nullopt;
   const int channels = static_cast<int>(probe.channels());
   std::vector<double> mean(probe.channels());
-  for (int i = 0; i < probe.irradiance_size(); ++i)
-    mean[static_cast<std::size_t>(i % channels)] += probe.irradiance(i) / probe.count();
+  const int known = KnownPoints(probe);
+  for (int i = 0; i < probe.irradiance_size(); ++i) {
+    if (IsKnown(probe, i / channels)) mean[static_cast<std::size_t>(i % channels)] += probe.irradiance(i) / known;
+  }
   double largest = 0;
   for (int i = 0; i < errors.size(); ++i) {
     const double scale = std::max(probe.irradiance(i), kDark * mean[static_cast<std::size_t>(i % channels)]);
@@ -42,6 +58,8 @@ std::optional<double> LargestRelativeError(const v1::ProbeResult& probe,
 }
 
 std::string ErrorText(const v1::RenderResult& result, const v1::ProbeResult& probe) {
+  const int unknown = static_cast<int>(probe.count()) - KnownPoints(probe);
+  if (unknown > 0) return "no samples at " + std::to_string(unknown) + " of " + std::to_string(probe.count()) + " points";
   if (const auto error = LargestRelativeError(probe, probe.standard_error()))
     return "largest relative standard error " + FormatPercent(*error);
   if (const auto error = LargestRelativeError(probe, probe.estimated_error()))

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "client/cli/comparison/matching.h"
+#include "client/cli/formats/result_columns.h"
 #include "client/cli/statistics/distributions.h"
 #include "client/cli/status/exit_code.h"
 #include "client/cli/text/numbers.h"
@@ -54,9 +55,20 @@ Stated ErrorOf(const v1::RenderResult& result, const v1::ProbeResult& probe, con
   return {0, values.error->empty() ? 0 : (*values.error)[i]};
 }
 
-double MeanSize(const Array& values) {
+// The entries of flat arrays that belong to points of which both results know something.
+std::vector<int> KnownEntries(const v1::ProbeResult& a, const v1::ProbeResult& b) {
+  const int channels = static_cast<int>(a.channels());
+  std::vector<int> entries;
+  for (int point = 0; point < static_cast<int>(a.count()); ++point) {
+    if (!IsKnown(a, point) || !IsKnown(b, point)) continue;
+    for (int channel = 0; channel < channels; ++channel) entries.push_back(point * channels + channel);
+  }
+  return entries;
+}
+
+double MeanSize(const Array& values, const std::vector<int>& entries) {
   double sum = 0;
-  for (const double value : values) sum += std::abs(value) / values.size();
+  for (const int i : entries) sum += std::abs(values[i]) / static_cast<double>(entries.size());
   return sum;
 }
 
@@ -72,11 +84,12 @@ class QuantityComparer {
     QuantityComparison out;
     out.probe = a.name();
     out.quantity = quantity_;
-    out.values = va.value->size();
-    const double mean_size = MeanSize(*vb.value);
+    const std::vector<int> entries = KnownEntries(a, b);
+    out.values = static_cast<int>(entries.size());
+    const double mean_size = MeanSize(*vb.value, entries);
     double square = 0, reference = 0, sum_z = 0, sum_z2 = 0, worst = 1;
     int estimated = 0;
-    for (int i = 0; i < out.values; ++i) {
+    for (const int i : entries) {
       const double x = (*va.value)[i], y = (*vb.value)[i], difference = x - y;
       const Stated ea = ErrorOf(result_a_, a, va, i, quantity_ == "irradiance");
       const Stated eb = ErrorOf(result_b_, b, vb, i, quantity_ == "irradiance");
@@ -155,6 +168,10 @@ absl::StatusOr<Comparison> Compare(const v1::RenderResult& a, const v1::RenderRe
   double values = 0;
   for (const v1::ProbeResult& probe : a.probes()) {
     const v1::ProbeResult* other = FindProbe(b, probe.name());
+    if (probe.count() > 0 && KnownEntries(probe, *other).empty()) {
+      return UsageError("the results cannot be compared: probe '" + probe.name() +
+                        "' has no point with samples in both");
+    }
     for (const char* quantity : {"irradiance", "gradient", "rotation", "hessian"})
       if (Has(probe, quantity) && Has(*other, quantity)) {
         pairs.push_back({&probe, other, quantity});

@@ -19,7 +19,7 @@ inline constexpr int kDegreesOfFreedom = 14;
 struct QuantityComparison {
   std::string probe;
   std::string quantity;
-  int values = 0;  // Points times channels.
+  int values = 0;  // Points that both know times channels.
   double rms = 0;  // Of A - B; in the unit of the quantity, as is `largest`.
   double largest = 0;
   int largest_index = 0;               // In the array.
@@ -35,7 +35,8 @@ struct Comparison {
   bool Equal() const;
 };
 
-// The rule is in `flatlight compare --help` (help_texts.h). INVALID_ARGUMENT if the probes do not match.
+// The rule is in `flatlight compare --help` (help_texts.h). INVALID_ARGUMENT if the probes do not match, or one has no
+// point that both know.
 absl::StatusOr<Comparison> Compare(const v1::RenderResult& a, const v1::RenderResult& b,
                                    std::optional<double> tolerance);
 

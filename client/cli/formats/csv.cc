@@ -26,7 +26,7 @@ std::string ResultToCsv(const v1::RenderResult& result, const std::function<bool
       for (const ResultColumn& column : columns)
         for (int channel = 0; channel < width(column); ++channel) {
           csv += ',';
-          if (!column.values(probe).empty()) csv += FormatExactly(ColumnValue(column, probe, point, channel));
+          if (HasValue(column, probe, point)) csv += FormatExactly(ColumnValue(column, probe, point, channel));
         }
       csv += '\n';
     }

@@ -51,8 +51,8 @@ std::string ResultToNpy(const v1::RenderResult& result, const std::function<bool
       Append(static_cast<std::int32_t>(point), npy);
       for (const ResultColumn& column : columns)
         for (int channel = 0; channel < (column.spectral() ? channels : 1); ++channel)
-          Append(column.values(probe).empty() ? std::numeric_limits<double>::quiet_NaN()
-                                              : ColumnValue(column, probe, point, channel),
+          Append(HasValue(column, probe, point) ? ColumnValue(column, probe, point, channel)
+                                                : std::numeric_limits<double>::quiet_NaN(),
                  npy);
     }
   }

@@ -66,12 +66,14 @@ std::vector<PlotSeries> PlotSeriesOf(const v1::RenderResult& result, const PlotQ
     const bool band = !probe.standard_error().empty() && !errors.values(probe).empty();
     for (int channel = 0; channel < static_cast<int>(probe.channels()); ++channel) {
       PlotSeries series{Title(result, number, channel), number, channel, {}};
-      for (int i = 0; i < static_cast<int>(probe.count()); ++i)
+      for (int i = 0; i < static_cast<int>(probe.count()); ++i) {
+        if (!IsKnown(probe, i)) continue;
         series.points.push_back({angles        ? DegreesOff(probe, i)
                                  : arc_lengths ? probe.arc_length(i)
                                                : i,
                                  ColumnValue(values, probe, i, channel),
                                  band ? 2 * ColumnValue(errors, probe, i, channel) : 0});
+      }
       series.points = Thinned(series.points, kMostPoints);
       all.push_back(std::move(series));
     }

@@ -43,6 +43,12 @@ int ResultChannels(const v1::RenderResult& result) {
   return channels;
 }
 
+bool IsKnown(const v1::ProbeResult& probe, int point) { return probe.samples().empty() || probe.samples(point) > 0; }
+
+bool HasValue(const ResultColumn& column, const v1::ProbeResult& probe, int point) {
+  return !column.values(probe).empty() && (!column.spectral() || IsKnown(probe, point));
+}
+
 double ColumnValue(const ResultColumn& column, const v1::ProbeResult& probe, int point, int channel) {
   if (!column.spectral()) return column.values(probe)[point * column.stride + column.offset];
   const int channels = static_cast<int>(probe.channels());

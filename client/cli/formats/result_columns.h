@@ -33,6 +33,12 @@ std::vector<ResultColumn> ResultColumnsOf(const v1::RenderResult& result);
 // Largest number of channels of a probe; at least 1.
 int ResultChannels(const v1::RenderResult& result);
 
+// Whether anything is known of the point: false where a time limit left it without samples.
+bool IsKnown(const v1::ProbeResult& probe, int point);
+
+// Whether the column says something of the point: all do that the probe has, but values of points that are not known.
+bool HasValue(const ResultColumn& column, const v1::ProbeResult& probe, int point);
+
 // The value at a point of a probe that has the column. A grey probe has the same value in every channel.
 double ColumnValue(const ResultColumn& column, const v1::ProbeResult& probe, int point, int channel);
 

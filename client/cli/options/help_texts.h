@@ -82,6 +82,7 @@ Verdict (exit status 0: equal, 10: they differ, 2: not comparable):
                        stated bounds + rounding; over each probe mean z and mean z^2 must agree with 0 and 1. t is
                        Student's for 14 degrees of freedom such that equal results fail less than once in 10 000 times,
                        whatever the number of points.
+Points that a time limit left without samples, in A or in B, are left out.
 
 Examples:
   flatlight compare result.json reference.json

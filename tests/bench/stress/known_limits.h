@@ -36,7 +36,7 @@ inline constexpr KnownLimit kKnownLimits[] = {
     {"nested", "oracle", 0.01, "full circles close to rounding, for the oracle: light of 1e-15 comes through"},
     {"arcs", "rays", 0.0005, "arcs of 1e-11: which side is seen is below rounding"},
     {"slivers", "rays", 0.0005, "points in corners of 1e-3: rays start farther on, where they see 1e-8 more or less"},
-    {"slivers", "sampling", 0.0001, "free points where walls cross at 1e-6: which wall they are lifted off"},
+    {"slivers", "sampling", 0.0001, "walls 5e-15 apart, 2e-6 from a point: which one is in front"},
     {"grazing", "rays", 0.0005, "light of 1e-22 at the horizon, where coordinates tell nothing"},
 };
 

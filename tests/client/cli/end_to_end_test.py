@@ -56,6 +56,24 @@ class EndToEnd(PictureReader, unittest.TestCase):
 
     # --- render and its outputs
 
+    def test_a_time_limit_ends_before_every_point_had_its_turn(self):
+        room = {"name": "room", "plane": {
+            "materials": [{"name": "white", "lambertian": {"reflectance": [0.9999]}}],
+            "curves": [{"name": "walls", "material": "white", "emission": {"radiance": [1]}, "polyline": {
+                "points": [{"x": x, "y": y} for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], "closed": True}}]},
+            "probes": [{"name": "walls", "curve": "walls", "count": 20000}]}
+        self.write("room.json", json.dumps(room))
+        run = self.run_cli("render", "room.json", "--method", "path-tracing", "--time-limit", "0.5", "-o", "r.json")
+        self.assertRegex(run.stdout, "no samples at [0-9]+ of 20000 points\ntime limit reached")
+        with open(self.path("r.json")) as file:
+            result = json.load(file)
+        samples = result["probes"][0]["samples"]
+        self.assertEqual(result["endReason"], "TIME_LIMIT")
+        self.assertEqual(result["statistics"]["unsampledPoints"], samples.count(0))
+        self.assertGreater(samples.count(0), 0)
+        self.assertLess(samples.count(0), 20000)
+        self.assertEqual(samples.count(16), 20000 - samples.count(0))
+
     def test_render_writes_every_form(self):
         names = ["r." + form for form in ("json", "csv", "npy", "svg", "png", "exr", "hdr")]
         run = self.run_cli("render", "gallery:unit-light", "--method", "exact", *sum((["-o", n] for n in names), []))

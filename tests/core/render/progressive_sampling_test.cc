@@ -127,16 +127,54 @@ TEST(ProgressiveSamplingTest, TimeLimitEndsAtEqualCountsAndInTime) {
   }
 }
 
-TEST(ProgressiveSamplingTest, TimeLimitLeavesEveryPointABlock) {
+// The limit ends the first round as any other: points that had no turn have no samples, those that had one are the same
+// as ever.
+TEST(ProgressiveSamplingTest, TimeLimitEndsTheFirstRound) {
   ManualClock clock;
   SamplingGoal goal;
-  goal.time_limit = 1e-3;
-  ProgressiveSampling sampling(std::make_unique<UniformSampler>(&clock, std::chrono::seconds(1)), {3}, goal);
+  goal.time_limit = 2.5;
+  ProgressiveSampling sampling(std::make_unique<UniformSampler>(&clock, std::chrono::seconds(1)), {4, 10}, goal);
   InlineExecutor executor;
   const Cancellation never;
-  sampling.Advance(executor, 1, never, clock, kForever);
-  ASSERT_TRUE(sampling.done());
-  EXPECT_EQ(Samples(sampling, 3), std::vector<double>(3, 16));
+  while (!sampling.done()) sampling.Advance(executor, 1, never, clock, std::chrono::milliseconds(10));
+  EXPECT_EQ(sampling.end_reason(), EndReason::kTimeLimit);
+  EXPECT_EQ(Samples(sampling, 10), (std::vector<double>{16, 16, 16, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(sampling.Progress().fraction, 1);
+  EXPECT_FALSE(sampling.Progress().relative_error.has_value());
+  goal.time_limit.reset();
+  goal.samples = 16;
+  ProgressiveSampling whole(std::make_unique<UniformSampler>(), {4, 10}, goal);
+  whole.Advance(executor, 1, never, clock, kForever);
+  for (std::size_t point = 0; point < 3; ++point)
+    EXPECT_EQ(sampling.Value(point).estimates[0].mean, whole.Value(point).estimates[0].mean);
+}
+
+// Blocks that take longer and longer: the plan of the round is off, the limit is not.
+TEST(ProgressiveSamplingTest, TimeLimitEndsARoundThatTakesLongerThanPlanned) {
+  ManualClock clock;
+  class SlowingSampler final : public PointSampler {
+   public:
+    explicit SlowingSampler(ManualClock& clock) : clock_(clock) {}
+    std::size_t channels() const override { return 1; }
+    void Doubts(std::size_t, std::span<Doubt> doubts) const override { doubts[0] = {}; }
+    std::unique_ptr<const Source> At(std::size_t) const override {
+      return SourceOf([this](std::uint32_t block, std::span<double>, double&) {
+        clock_.Advance(block < 4 ? std::chrono::milliseconds(1) : std::chrono::milliseconds(500));
+      });
+    }
+
+   private:
+    ManualClock& clock_;
+  };
+  SamplingGoal goal;
+  goal.time_limit = 2;
+  ProgressiveSampling sampling(std::make_unique<SlowingSampler>(clock), {20}, goal);
+  InlineExecutor executor;
+  const Cancellation never;
+  while (!sampling.done()) sampling.Advance(executor, 1, never, clock, std::chrono::milliseconds(10));
+  EXPECT_EQ(sampling.end_reason(), EndReason::kTimeLimit);
+  EXPECT_LE(std::chrono::duration<double>(clock.Now().time_since_epoch()).count(), 2.5) << "a block more at most";
+  EXPECT_TRUE(sampling.Progress().relative_error.has_value());
 }
 
 // Points of larger mean meet the relative target with fewer samples; all counts are 64 times powers of two.

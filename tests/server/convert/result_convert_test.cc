@@ -119,6 +119,9 @@ TEST(ResultConvertTest, AResultHasAllProbes) {
   EXPECT_THAT(result.probes(1).gradient(), ElementsAre(13, 14, 15));
   EXPECT_EQ(result.statistics().rays(), 1234);
   EXPECT_FALSE(result.statistics().has_error_bound());
+  EXPECT_FALSE(result.statistics().has_unsampled_points());
+  field.probes[0].samples = {16, 0, 0};
+  EXPECT_EQ(ResultToProto(SceneOutline(*scene), field).statistics().unsampled_points(), 2);
   field.error_bound = 1e-9;
   EXPECT_EQ(ResultToProto(SceneOutline(*scene), field).statistics().error_bound(), 1e-9);
 }

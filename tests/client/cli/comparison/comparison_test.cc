@@ -74,6 +74,20 @@ TEST(Compare, OneWrongPointIsFound) {
   EXPECT_EQ(comparison->quantities[0].largest_index, 17);
 }
 
+// Points that a time limit left without samples: their 0 is no value.
+TEST(Compare, PointsWithoutSamplesAreLeftOut) {
+  v1::RenderResult estimate = Estimate(1);
+  v1::ProbeResult& probe = *estimate.mutable_probes(0);
+  for (int i = 0; i < kPoints; ++i) probe.add_samples(i < 100 ? 16 : 0);
+  for (int i = 100; i < kPoints; ++i) probe.set_irradiance(i, 0), probe.set_standard_error(i, 0);
+  const auto comparison = Compare(estimate, Truth(), {});
+  ASSERT_TRUE(comparison.ok());
+  EXPECT_TRUE(comparison->Equal());
+  EXPECT_EQ(comparison->quantities[0].values, 100);
+  for (double& samples : *probe.mutable_samples()) samples = 0;
+  EXPECT_FALSE(Compare(estimate, Truth(), {}).ok());
+}
+
 TEST(Compare, BoundsOfDeterministicResultsCount) {
   v1::RenderResult result = Truth();
   result.mutable_probes(0)->set_irradiance(0, 1 + 1e-6);

@@ -99,6 +99,17 @@ TEST(Csv, HasOnlyTheColumnsThatExist) {
             "free,0,0,0,0,1,,1,0.25\n");
 }
 
+TEST(Csv, PointsWithoutSamplesHaveNoValues) {
+  v1::RenderResult result;
+  v1::ProbeResult& probe = AddProbe(result, "floor", 2);
+  probe.set_irradiance(1, 0);
+  for (const double error : {0.5, 0.0}) probe.add_standard_error(error);
+  for (const double samples : {16, 0}) probe.add_samples(samples);
+  EXPECT_EQ(ResultToCsv(result, [] { return false; }),
+            "probe,index,x,y,nx,ny,arcLength,irradiance,standardError,samples\n"
+            "floor,0,0,0,0,1,0.5,1,0.5,16\nfloor,1,1,0,0,1,1.5,,,0\n");
+}
+
 TEST(Csv, ColourHasThreeColumns) {
   v1::RenderResult result;
   AddProbe(result, "p", 1, 3);

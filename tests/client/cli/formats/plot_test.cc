@@ -82,6 +82,16 @@ TEST(PlotSeries, ThinningKeepsPeaksAndOrder) {
   EXPECT_EQ(Thinned(points, 10000).size(), 10000U);
 }
 
+TEST(PlotSeries, PointsWithoutSamplesAreNotDrawn) {
+  v1::RenderResult result;
+  v1::ProbeResult& probe = AddProbe(result, "floor", 3);
+  for (const double samples : {16, 0, 16}) probe.add_samples(samples);
+  const auto series = PlotSeriesOf(result, {"irradiance", "standardError", ""});
+  ASSERT_EQ(series.size(), 1u);
+  ASSERT_EQ(series[0].points.size(), 2u);
+  EXPECT_EQ(series[0].points[1].place, 2.5);
+}
+
 TEST(PlotSeries, PointsWithoutArcLengthAreNumbered) {
   v1::RenderResult result;
   AddProbe(result, "free", 3).clear_arc_length();
