@@ -31,15 +31,16 @@ struct World {
 struct NearestSearch {
   using Result = NearestCrossing;
   using Input = WalkRay;
-  WalkRay ray;
+  // Of the ray no more is kept than its line has not: copied as a whole, it would be read before its parts are written.
+  std::uint32_t own_carrier = kNoCarrier;
   Line line{{}, {}, 0};
   NearestCrossing result;
 
   NearestSearch() = default;
   HWY_INLINE NearestSearch(const World& world, const WalkRay& along)
-      : ray(along), line(along.from.position, along.direction, world.scene.touch_distance()) {}
+      : own_carrier(along.from.carrier), line(along.from.position, along.direction, world.scene.touch_distance()) {}
 
-  const WalkRay& input() const { return ray; }
+  WalkRay input() const { return {{line.origin, own_carrier}, line.direction}; }
   double end() const { return result.t; }
 
   // Meets the elements of a cell; false, as a later one may be nearer.
@@ -55,7 +56,7 @@ struct NearestSearch {
         const CurveBlock& block = blocks[index];
         const LaneMeeting meeting = MeetLanes(line, block, lane);
         auto met = hn::And(meeting.met, hn::And(hn::Gt(meeting.t, hn::Zero(d)), hn::Lt(meeting.t, nearest)));
-        met = hn::AndNot(OfCarrier(block, lane, ray.from.carrier), met);
+        met = hn::AndNot(OfCarrier(block, lane, own_carrier), met);
         if (cell.kind == GridCell::kCurves) met = hn::AndNot(IsArc(block, lane), met);
         nearest = hn::IfThenElse(met, meeting.t, nearest);
         where = hn::IfThenElse(hn::RebindMask(ids, met), hn::Set(ids, index), where);
@@ -85,7 +86,7 @@ struct NearestSearch {
   HWY_INLINE bool MeetElement(const World& world, std::uint32_t index) {
     const Element& element = world.scene.elements()[index];
     const double touch = world.scene.touch_distance();
-    const bool own = element.carrier == ray.from.carrier;
+    const bool own = element.carrier == own_carrier;
     Crossings crossings;
     if (element.kind == Element::Kind::kSegment) {
       if (!own) crossings = CrossSegment(element, line.origin, line.direction, touch);

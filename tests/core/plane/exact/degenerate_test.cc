@@ -286,6 +286,23 @@ TEST(DegenerateTest, APointInsideTheApexOfAHairpin) {
   }
 }
 
+// Walls cross at the point, which faces along one of them: just beyond, along its tangent, that one hides all behind
+// it, and the other lies along the tangent, or hides what is between itself and that way.
+TEST(DegenerateTest, AFreePointAtACrossingFacesAlongOneOfTheWalls) {
+  for (const double turn : {90.0, 60.0, 120.0, 30.0}) {
+    const double angle = turn * kPi / 180;
+    SceneDescription scene = EmptyScene();
+    AddCurve(scene, ArcDescription{{0, 0}, 9, 0, 2 * kPi}, 1);
+    AddCurve(scene, SegmentDescription{{0, -1}, {0, 1}});
+    AddCurve(scene, SegmentDescription{Point2{-std::sin(angle), -std::cos(angle)}, {std::sin(angle), std::cos(angle)}});
+    Probe(scene, {0, 0}, {0, 1});
+    // The tangent is (1, 0): seen are the directions from the wall ahead to the other wall or to the horizon, those of
+    // the side on which the tangent leaves both.
+    const double seen = turn < 90 ? 1 - std::sin(angle) : 1;
+    EXPECT_NEAR(ValueOf(scene).irradiance, seen, 1e-6) << turn;
+  }
+}
+
 // Before the apex of a hairpin the mouth is closed by a lamp that crosses one side a little before its end: light ends
 // where it crosses, in whatever order they are found.
 TEST(DegenerateTest, TheEndOfAWallSeenAllButEdgeOnBehindALamp) {
