@@ -59,7 +59,8 @@ std::optional<double> LargestRelativeError(const v1::ProbeResult& probe,
 
 std::string ErrorText(const v1::RenderResult& result, const v1::ProbeResult& probe) {
   const int unknown = static_cast<int>(probe.count()) - KnownPoints(probe);
-  if (unknown > 0) return "no samples at " + std::to_string(unknown) + " of " + std::to_string(probe.count()) + " points";
+  if (unknown > 0)
+    return "no samples at " + std::to_string(unknown) + " of " + std::to_string(probe.count()) + " points";
   if (const auto error = LargestRelativeError(probe, probe.standard_error()))
     return "largest relative standard error " + FormatPercent(*error);
   if (const auto error = LargestRelativeError(probe, probe.estimated_error()))
