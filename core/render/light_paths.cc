@@ -87,7 +87,7 @@ bool DirectLightOnly(const Scene& scene, const Settings& settings) {
   return settings.max_bounces == 0u || scene.traits().max_reflectance == 0;
 }
 
-bool HasHiddenCaustics(const Scene& scene) {
+bool HasChainedLight(const Scene& scene) {
   const std::vector<Curve>& curves = scene.curves();
   return scene.traits().lights > 0 && std::any_of(curves.begin(), curves.end(), [](const Curve& curve) {
            return IsSpecular(curve.material) && !curve.reflectance.IsBlack();

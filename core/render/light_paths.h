@@ -14,8 +14,8 @@ bool AllDark(const Scene& scene);
 // Nothing reflects, or no reflection is wanted.
 bool DirectLightOnly(const Scene& scene, const Settings& settings);
 
-// Lights without a surface shine where mirrors or glass pass their light on: no path from a receiver finds it there.
-bool HasHiddenCaustics(const Scene& scene);
+// Lights without a surface may shine where mirrors or glass pass their light on.
+bool HasChainedLight(const Scene& scene);
 
 // Whether it is certain that no curve stands between any two points of curves and probes that see each other's sides:
 // each straight piece has all other pieces and all points in one of its closed half planes (a convex room, facing

@@ -210,11 +210,11 @@ void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diag
     return;
   }
   if (settings.method == Method::kReference) return CheckReference(scene, settings, diagnostics);
-  if (scene.traits().probe_points > 0 && !DirectLightOnly(scene, settings) && HasHiddenCaustics(scene)) {
+  if (settings.method == Method::kIrradianceCaching && !DirectLightOnly(scene, settings) && HasChainedLight(scene)) {
     diagnostics.Add("settings.method",
                     NameOf(settings) +
-                        " cannot find the light that plane.lights send over mirrors and glass: set max bounces "
-                        "to 0, or give the light a surface, a small arc that emits");
+                        " leaves out the light that plane.lights send over mirrors and glass: use path-tracing or "
+                        "ray-tracing, or set max bounces to 0");
   }
   CheckFading(scene, settings, diagnostics);
 }

@@ -20,6 +20,8 @@ using Seconds = std::chrono::duration<double>;
 
 // With fewer, derivatives miss too much for the misses to be told from noise.
 constexpr std::uint32_t kFirstRays = 16;
+// Children of a gather's key, beyond those of its rays.
+constexpr std::uint64_t kChains = std::uint64_t{1} << 43;
 constexpr double kRoundSeconds = 4e-3;  // Of a thread, between two looks at the clock.
 constexpr std::size_t kMostTasks = 1 << 14;
 constexpr double kDarkest = 0.01;  // Errors count in this share of the probe's mean at least (DESIGN 3).
@@ -118,7 +120,24 @@ RayTracingRendering::Gathered RayTracingRendering::Gather(std::size_t point, std
     result.value[1] = derivatives.first;
     result.value[2] = derivatives.second;
   }
+  std::vector<ChainedLight> chained;
+  tree_->chains().FindByChance(ChainEffort::kFine, {receiver.position, receiver.element}, receiver.normal,
+                               tree_->most_bounces(), ToUnitInterval(ChildKey(key, kChains)), result.cast, chained);
+  AddChained(receiver, chained, result.value);
   return result;
+}
+
+void RayTracingRendering::AddChained(const Receiver& receiver, const std::vector<ChainedLight>& ways,
+                                     std::array<Spectrum, kQuantities>& value) const {
+  for (const ChainedLight& way : ways) {
+    const Spectrum irradiance = way.light.cosine * way.light.irradiance;
+    value[0] = value[0] + irradiance;
+    if (orders_ == 1) continue;
+    const Series<4> along = tree_->chains().AlongReceiver(way, receiver);
+    value[1] = value[1] + along[1] * irradiance;
+    value[2] = value[2] + along.Derivative(2) * irradiance;
+    value[kRotation] = value[kRotation] + Dot(way.light.direction, receiver.tangent) * way.light.irradiance;
+  }
 }
 
 void RayTracingRendering::Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
@@ -181,6 +200,11 @@ void RayTracingRendering::FinishPoint(std::size_t point, const Gathered* gathere
     }
   }
   if (!lights_) return;
+  std::vector<ChainedLight> chained;
+  const Receiver& receiver = points_[point];
+  tree_->chains().Find(ChainEffort::kFine, {receiver.position, receiver.element}, receiver.normal,
+                       tree_->most_bounces(), rays_, chained);
+  AddChained(receiver, chained, estimate.value);
   ExactValue direct;
   lights_->Add(points_[point], direct);
   const std::array<const Spectrum*, kQuantities> light = {&direct.irradiance, &direct.gradient, &direct.hessian,

@@ -54,6 +54,9 @@ class RayTracingRendering final : public Rendering {
   void BeginPass(std::uint32_t rays);
   void PlanPass(Clock::Time now);
   Gathered Gather(std::size_t point, std::size_t replicate, const Cancellation& cancellation) const;
+  // Light of lights without a surface over mirrors and glass.
+  void AddChained(const Receiver& receiver, const std::vector<ChainedLight>& ways,
+                  std::array<Spectrum, kQuantities>& value) const;
   void FinishPoint(std::size_t point, const Gathered* gathered);
   double RelativeErrorAt(std::size_t point, const std::vector<Spectrum>& means) const;
   std::vector<Spectrum> MeansOverProbes() const;

@@ -6,18 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "core/plane/chains/incident_light.h"
 #include "core/plane/path_tracing/vertex.h"
 #include "core/plane/ray_caster.h"
 #include "core/scene/scene.h"
 
 namespace flatlight {
-
-// The light that comes straight from one light without a surface, as a vertex would get it if nothing blocked it.
-struct IncidentLight {
-  Vector2 direction;    // Unit, toward the light.
-  double cosine = 0;    // At the vertex; positive.
-  Spectrum irradiance;  // Of a curve that faces the light.
-};
 
 // Light of lights without a surface (THEORY 3): of all of them where they are few, else of one that is chosen by the
 // irradiance that it would give if nothing blocked.

@@ -28,7 +28,10 @@ PathTracer::Start::Start(const PathTracer& tracer, const Receiver& receiver, con
       vertex_(VertexAt(tracer.scene_, receiver)),
       view_(tracer.emitters_, vertex_, sight),
       half_angle_(receiver.half_angle) {
-  if (half_angle_ == 0) view_.LookCloser();
+  if (half_angle_ > 0) return;
+  view_.LookCloser();
+  double rays = 0;  // Not counted: how often a point's paths are begun depends on how work is cut.
+  tracer.chains_.Find(ChainEffort::kFine, vertex_.at, vertex_.normal, tracer.MostBounces(), rays, chained_);
 }
 
 PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracingOptions& options)
@@ -39,7 +42,8 @@ PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracin
       emitting_(EmittingPieces(*caster_, options)),
       emitters_(std::shared_ptr<const Scene>(caster_, &caster_->scene()), emitting_),
       sights_(*caster_, emitters_.weighs() ? emitting_ : std::vector<ElementId>()),
-      lights_(*caster_) {
+      lights_(*caster_),
+      chains_(*caster_, {.most_links = MostBounces()}) {
   surfaces_.reserve(scene_.curves().size());
   for (const Curve& curve : scene_.curves()) {
     Surface surface{curve.reflectance, curve.EmittedRadiance(Side::kFront), curve.EmittedRadiance(Side::kBack)};

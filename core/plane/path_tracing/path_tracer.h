@@ -3,12 +3,14 @@
 #define FLATLIGHT_CORE_PLANE_PATH_TRACING_PATH_TRACER_H_
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/execution/cancellation.h"
+#include "core/plane/chains/chain_lights.h"
 #include "core/plane/materials/scattering.h"
 #include "core/plane/path_tracing/emitter_sampler.h"
 #include "core/plane/path_tracing/emitter_sights.h"
@@ -43,8 +45,8 @@ class PathWalk;
 //   E = (sampled emitters) + w 2 Le(hit) + rho(hit) E(hit, on the side that was hit).
 // Glossy curves sample emitters and their own lobe in the same way, mirrors and glass go on in the one direction there
 // is. Paths of a camera's pixel begin with a direction in it, all alike likely, and give the radiance that comes along
-// it. Light of lights without a surface is added at every vertex that is not specular; what they send through mirrors
-// and glass to such a vertex no path finds. The environment is found by chance.
+// it. Light of lights without a surface is added at every vertex that is not specular, straight and over mirrors and
+// glass. The environment is found by chance.
 // Russian roulette ends paths of small weight and divides survivors by their chance: no length is too long to count.
 class PathTracer {
  public:
@@ -68,6 +70,7 @@ class PathTracer {
     Vertex vertex_;
     EmitterSampler::View view_;
     double half_angle_;
+    std::vector<ChainedLight> chained_;  // Comes over mirrors and glass from lights without a surface.
   };
 
   // What shapes tell of the ways from the receiver to the emitters: worth remembering.
@@ -103,6 +106,8 @@ class PathTracer {
   };
   static constexpr std::uint32_t kLambertian = 0xffffffff;
 
+  std::uint32_t MostBounces() const { return options_.max_bounces.value_or(std::numeric_limits<std::uint32_t>::max()); }
+
   std::shared_ptr<const RayCaster> caster_;
   const Scene& scene_;
   PathTracingOptions options_;
@@ -111,6 +116,7 @@ class PathTracer {
   EmitterSampler emitters_;
   EmitterSights sights_;
   LightSampler lights_;
+  ChainLights chains_;
   std::vector<Surface> surfaces_;  // By curve.
   std::vector<Scattering> scatterings_;
   double most_compression_ = 1;  // Of radiance, by one border.

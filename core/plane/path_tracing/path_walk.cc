@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "core/math/check.h"
 #include "core/math/trig.h"
@@ -37,7 +38,7 @@ class PathWalk {
   }
 
   void Run(const PathTracer::Start& start, const Cancellation& cancellation) {
-    const std::uint32_t last_depth = tracer_.options_.max_bounces.value_or(std::numeric_limits<std::uint32_t>::max());
+    const std::uint32_t last_depth = tracer_.MostBounces();
     vertex_ = start.vertex_;
     half_angle_ = start.half_angle_;
     for (std::uint32_t depth = 0; !cancellation.cancelled(); ++depth) {
@@ -53,6 +54,7 @@ class PathWalk {
       }
       if (view != nullptr) {
         GatherLights(random.u);
+        GatherChained(start, depth, last_depth - depth);
         GatherSampled(*view, random.u);
       }
       const bool last = depth == last_depth;
@@ -103,6 +105,22 @@ class PathWalk {
     tracer_.lights_.VisitUnblocked(vertex_, u, rays_, [&](const IncidentLight& light) {
       Add(1, Response(light.direction, light.cosine) * light.irradiance);
     });
+  }
+
+  void GatherChained(const PathTracer::Start& start, std::uint32_t depth, std::uint32_t most_links) {
+    const ChainLights& chains = tracer_.chains_;
+    if (chains.empty() || most_links == 0) return;
+    const ChainEffort effort = depth == 0 ? ChainEffort::kFine : ChainEffort::kCoarse;
+    chained_.clear();
+    if (depth == 0) {
+      chained_ = start.chained_;
+    } else {
+      chains.Find(effort, vertex_.at, vertex_.normal, most_links, rays_, chained_);
+    }
+    chains.FindByChance(effort, vertex_.at, vertex_.normal, most_links, stream_.Single(index_, depth + kChainNumber),
+                        rays_, chained_);
+    for (const ChainedLight& way : chained_)
+      Add(1, Response(way.light.direction, way.light.cosine) * way.light.irradiance);
   }
 
   void GatherSampled(const EmitterSampler::View& view, double u) {
@@ -200,8 +218,9 @@ class PathWalk {
     return true;
   }
 
-  // Beyond all depths: tells the second number of a lobe from that of roulette.
+  // Beyond all depths: tell the second number of a lobe and that of chains from that of roulette.
   static constexpr std::uint32_t kSecondNumber = 0x80000000;
+  static constexpr std::uint32_t kChainNumber = 0xc0000000;
 
   const PathTracer& tracer_;
   const SampleStream& stream_;
@@ -221,6 +240,7 @@ class PathWalk {
   double last_largest_ = kInfinity;
   int lossless_ = 0;
   std::optional<EmitterSampler::View> view_;
+  std::vector<ChainedLight> chained_;
 };
 
 void PathTracer::AddPath(const Start& start, const SampleStream& stream, std::uint32_t index,

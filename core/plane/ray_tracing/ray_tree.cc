@@ -16,7 +16,8 @@ namespace {
 // Children of a vertex's key, beyond any number of rays.
 constexpr std::uint64_t kRoulette = std::uint64_t{1} << 40;
 constexpr std::uint64_t kLights = kRoulette + 1;
-constexpr std::uint64_t kSecondNumbers = kRoulette + 2;
+constexpr std::uint64_t kChains = kRoulette + 2;
+constexpr std::uint64_t kSecondNumbers = kRoulette + 3;
 
 double Number(std::uint64_t key, std::uint64_t child) { return ToUnitInterval(ChildKey(key, child)); }
 
@@ -27,7 +28,8 @@ RayTree::RayTree(std::shared_ptr<const RayCaster> caster, const RayTreeOptions& 
       scene_(caster_->scene()),
       end_black_paths_(options.end_black_paths),
       most_bounces_(options.max_bounces.value_or(std::numeric_limits<std::uint32_t>::max())),
-      lights_(*caster_) {
+      lights_(*caster_),
+      chains_(*caster_, {.most_links = most_bounces_}) {
   for (const Curve& curve : scene_.curves()) {
     Surface surface{curve.reflectance, curve.EmittedRadiance(Side::kFront), curve.EmittedRadiance(Side::kBack), {}, {}};
     if (!std::holds_alternative<Lambertian>(curve.material)) {
@@ -73,12 +75,25 @@ Spectrum RayTree::Leaving(const Vertex& vertex, double sine, double cosine, std:
   return hit ? Arriving(*hit, direction, depth + 1, branches, lossless, key, growth) : scene_.environment();
 }
 
+template <typename Visit>
+void RayTree::VisitLights(const Vertex& vertex, std::uint32_t depth, std::uint64_t key, const Growth& growth,
+                          Visit visit) const {
+  lights_.VisitUnblocked(vertex, Number(key, kLights), growth.cast, visit);
+  const std::uint32_t most_links = most_bounces_ - depth - 1;
+  if (chains_.empty() || most_links == 0) return;
+  std::vector<ChainedLight> chained;
+  chains_.Find(ChainEffort::kCoarse, vertex.at, vertex.normal, most_links, growth.cast, chained);
+  chains_.FindByChance(ChainEffort::kCoarse, vertex.at, vertex.normal, most_links, Number(key, kChains), growth.cast,
+                       chained);
+  for (const ChainedLight& way : chained) visit(way.light);
+}
+
 // The BRDF is reflectance / 2 and rays are uniform in the sine, with density cosine / 2: the mean of what they bring.
 Spectrum RayTree::Diffuse(const Vertex& vertex, const Spectrum& reflectance, std::uint32_t depth,
                           std::uint32_t branches, std::uint64_t key, const Growth& growth) const {
   Spectrum mean;
-  lights_.VisitUnblocked(vertex, Number(key, kLights), growth.cast,
-                         [&](const IncidentLight& light) { mean = mean + 0.5 * light.cosine * light.irradiance; });
+  VisitLights(vertex, depth, key, growth,
+              [&](const IncidentLight& light) { mean = mean + 0.5 * light.cosine * light.irradiance; });
   double survival = 1;
   if (branches == 1) {
     survival = reflectance.IsBlack() ? 0.5 : std::min(1.0, reflectance.Max());
@@ -97,7 +112,7 @@ Spectrum RayTree::Scattered(const Vertex& vertex, const Scattering& scattering, 
                             std::uint32_t branches, int lossless, std::uint64_t key, const Growth& growth) const {
   Spectrum light;
   if (!scattering.specular()) {
-    lights_.VisitUnblocked(vertex, Number(key, kLights), growth.cast, [&](const IncidentLight& incident) {
+    VisitLights(vertex, depth, key, growth, [&](const IncidentLight& incident) {
       const LocalDirection in{Dot(vertex.Tangent(), incident.direction), incident.cosine};
       light = light + incident.cosine * (scattering.Value(out, in) * incident.irradiance);
     });

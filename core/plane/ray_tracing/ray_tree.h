@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/execution/cancellation.h"
+#include "core/plane/chains/chain_lights.h"
 #include "core/plane/materials/scattering.h"
 #include "core/plane/path_tracing/light_sampler.h"
 #include "core/plane/path_tracing/vertex.h"
@@ -38,7 +39,9 @@ class RayTree {
                     const Cancellation& cancellation, double& cast) const;
 
   const RayCaster& caster() const { return *caster_; }
-  const LightSampler& lights() const { return lights_; }
+  // Of lights without a surface, over mirrors and glass.
+  const ChainLights& chains() const { return chains_; }
+  std::uint32_t most_bounces() const { return most_bounces_; }
 
  private:
   struct Surface {
@@ -57,6 +60,10 @@ class RayTree {
                     std::uint64_t key, const Growth& growth) const;
   Spectrum Leaving(const Vertex& vertex, double sine, double cosine, std::uint32_t depth, std::uint32_t branches,
                    int lossless, std::uint64_t key, const Growth& growth) const;
+  // Calls visit(IncidentLight) for light of lights without a surface, weighed such that the sum has the right mean.
+  template <typename Visit>
+  void VisitLights(const Vertex& vertex, std::uint32_t depth, std::uint64_t key, const Growth& growth,
+                   Visit visit) const;
   Spectrum Diffuse(const Vertex& vertex, const Spectrum& reflectance, std::uint32_t depth, std::uint32_t branches,
                    std::uint64_t key, const Growth& growth) const;
   Spectrum Scattered(const Vertex& vertex, const Scattering& scattering, LocalDirection out, std::uint32_t depth,
@@ -67,6 +74,7 @@ class RayTree {
   bool end_black_paths_;
   std::uint32_t most_bounces_;
   LightSampler lights_;
+  ChainLights chains_;
   std::vector<Surface> surfaces_;  // By curve.
 };
 

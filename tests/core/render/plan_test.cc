@@ -190,6 +190,23 @@ TEST(PlanTest, EverySkipHasADecisionAndAReason) {
   }
 }
 
+TEST(PlanTest, CachingSaysThatItLeavesOutLightOverMirrors) {
+  SceneMaker maker;
+  maker.Segment("floor", {0, 0}, {1, 0}).Probe("floor", 3);
+  maker.Segment("mirror", {0, 0}, {0, 1}, {.material = MirrorDescription{{0.9}}});
+  maker.Light(PointLightDescription{{0.5, 0.5}, {1}});
+  const auto scene = maker.Build();
+  Settings settings;
+  for (const Method method : {Method::kPathTracing, Method::kRayTracing}) {
+    settings.method = method;
+    EXPECT_THAT(Mistakes(*scene, settings), IsEmpty());
+  }
+  settings.method = Method::kIrradianceCaching;
+  EXPECT_THAT(Mistakes(*scene, settings), ElementsAre(HasSubstr("use path-tracing or ray-tracing")));
+  settings.max_bounces = 0;
+  EXPECT_THAT(Mistakes(*scene, settings), IsEmpty());
+}
+
 TEST(PlanTest, SkipsCanBeSwitchedOff) {
   Settings settings;
   settings.no_skip = {skip::kColour};

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_CORE_PLANE_CHAINS_LINE_FAMILY_H_
+#define FLATLIGHT_CORE_PLANE_CHAINS_LINE_FAMILY_H_
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "core/math/bernstein.h"
+#include "core/math/vec.h"
+
+namespace flatlight {
+
+// A line with a direction: all points p with Cross(direction, p) = moment.
+struct DirectedLine {
+  Vector2 direction;  // Unit.
+  double moment = 0;
+};
+
+// Lines that depend smoothly on a number between begin and end, to kFitTolerance.
+struct LineFamily {
+  static constexpr double kFitTolerance = 1e-11;
+  // Neighbouring families overlap by so much on either side, so that no line between them is lost by rounding.
+  static constexpr double kOverlap = 1e-12;
+
+  double begin = 0;
+  double end = 1;
+  Bernstein x, y, moment;
+
+  // How far a point lies to the left of each line, with `offset` taken away.
+  Bernstein LeftOf(Point2 p, double offset = 0) const {
+    Bernstein f;
+    for (std::size_t k = 0; k < Bernstein::kCount; ++k) f.b[k] = x.b[k] * p.y - y.b[k] * p.x - moment.b[k] - offset;
+    return f;
+  }
+  double At(double t) const { return begin + t * (end - begin); }
+
+  // The family of line(u) over the numbers from begin to end, in as many pieces as it takes to be smooth; calls
+  // emit(LineFamily). Where line(u) is absent at a node, pieces are halved as long as
+  // hopeful(begin, end) says that they may hold something. Pieces of kLeastPart of the whole are given up, or taken as
+  // they are: near a number where lines turn without bound, as at total reflection.
+  template <typename Line, typename Hopeful, typename Emit>
+  static void Fit(double begin, double end, const Line& line, const Hopeful& hopeful, const Emit& emit) {
+    const double least = std::max(kLeastPart * (end - begin), 16 * kOverlap);
+    FitPart(begin - kOverlap, end + kOverlap, least, line, hopeful, emit);
+  }
+
+ private:
+  static constexpr double kLeastPart = 0x1p-20;
+
+  template <typename Line, typename Hopeful, typename Emit>
+  static void FitPart(double begin, double end, double least, const Line& line, const Hopeful& hopeful,
+                      const Emit& emit) {
+    LineFamily family;
+    family.begin = begin, family.end = end;
+    std::array<double, Bernstein::kCount> x{}, y{}, moment{};
+    bool whole = true;
+    for (std::size_t i = 0; i < Bernstein::kCount && whole; ++i) {
+      const std::optional<DirectedLine> at = line(family.At(Bernstein::Nodes()[i]));
+      whole = at.has_value();
+      if (whole) x[i] = at->direction.x, y[i] = at->direction.y, moment[i] = at->moment;
+    }
+    const bool small = end - begin <= least;
+    if (whole) {
+      family.x = Bernstein::Through(x), family.y = Bernstein::Through(y), family.moment = Bernstein::Through(moment);
+      if (small || family.Fits(line)) return emit(family);
+    } else if (small || !hopeful(begin, end)) {
+      return;
+    }
+    const double middle = 0.5 * (begin + end);
+    FitPart(begin, middle + kOverlap, least, line, hopeful, emit);
+    FitPart(middle - kOverlap, end, least, line, hopeful, emit);
+  }
+
+  template <typename Line>
+  bool Fits(const Line& line) const {
+    for (const double t : {0.0, 0.0301536896, 0.32898992833716567, 0.58682408883346, 0.93301270189221941, 1.0}) {
+      const std::optional<DirectedLine> at = line(At(t));
+      if (!at) return false;
+      if (!(std::abs(x.At(t) - at->direction.x) <= kFitTolerance) ||
+          !(std::abs(y.At(t) - at->direction.y) <= kFitTolerance) ||
+          !(std::abs(moment.At(t) - at->moment) <= kFitTolerance)) {
+        return false;
+      }
+    }
+    return true;
+  }
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_PLANE_CHAINS_LINE_FAMILY_H_
