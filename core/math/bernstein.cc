@@ -119,15 +119,15 @@ void FindRoots(const Bernstein& f, double begin, double length, int halvings, Be
 }  // namespace
 
 const std::array<double, kCount>& Bernstein::Nodes() {
-  static const std::array<double, kCount> nodes = MakeNodes();
-  return nodes;
+  static const std::array<double, kCount> kNodes = MakeNodes();
+  return kNodes;
 }
 
 Bernstein Bernstein::Through(const std::array<double, kCount>& values) {
-  static const Matrix inverse = MakeInverse();
+  static const Matrix kInverse = MakeInverse();
   Bernstein f;
   for (std::size_t k = 0; k < kCount; ++k)
-    for (std::size_t i = 0; i < kCount; ++i) f.b[k] += inverse[k][i] * values[i];
+    for (std::size_t i = 0; i < kCount; ++i) f.b[k] += kInverse[k][i] * values[i];
   return f;
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double kMostChance = 0.125;
 // Beams that were not followed beforehand take long to follow, the longer the chain. Of the ways that come to one so
 // many go on, and so many from there on, link by link.
-constexpr double kGrowChance = 0.1;
+constexpr double kGrowChance = 0.05;
 constexpr double kGrowSurvival = 0.75;
 // A place on the circle that a ray comes from: the ray leaves there, or comes from across, never closer.
 constexpr double kOwnPlace = 1e-9;
@@ -62,7 +62,7 @@ void ChainLights::Follow() {
     const std::size_t i = queue.front();
     if (beams_[i].flux <= options_.least_share * total || beams_.size() >= room || looks >= options_.most_looks) break;
     if (coarse && beams_.size() >= coarse_room) {
-      coarse_ = MakeLevel(queue, total, false);
+      coarse_ = MakeLevel(queue, total);
       coarse = false;
     }
     std::pop_heap(queue.begin(), queue.end(), weaker);
@@ -76,11 +76,11 @@ void ChainLights::Follow() {
     }
     followers_.resize(beams_.size());
   }
-  fine_ = MakeLevel(queue, total, true);
+  fine_ = MakeLevel(queue, total);
   if (coarse) coarse_ = fine_;
 }
 
-ChainLights::Level ChainLights::MakeLevel(std::vector<std::size_t> open, double total, bool all_followed) const {
+ChainLights::Level ChainLights::MakeLevel(std::vector<std::size_t> open, double total) const {
   Level level;
   level.tree = LineTree(beams_);
   std::sort(open.begin(), open.end());
@@ -91,9 +91,8 @@ ChainLights::Level ChainLights::MakeLevel(std::vector<std::size_t> open, double 
   }
   if (left == 0) return level;
   level.open_share = left / total;
-  // The chance weighs the time that tries take against their noise: both are then small where little is left. Where
-  // most beams were followed beforehand, tries cost less.
-  level.chance = std::min(kMostChance, 0.5 * (all_followed ? level.open_share : std::sqrt(level.open_share)));
+  // The chance weighs the time that tries take against their noise: both are then small where little is left.
+  level.chance = std::min(kMostChance, 0.5 * level.open_share);
   return level;
 }
 

@@ -101,8 +101,7 @@ class ChainLights {
   };
   const Level& LevelOf(ChainEffort effort) const { return effort == ChainEffort::kFine ? fine_ : coarse_; }
   void Follow();
-  // `all_followed`: none of its open beams will be followed beforehand.
-  Level MakeLevel(std::vector<std::size_t> open, double total, bool all_followed) const;
+  Level MakeLevel(std::vector<std::size_t> open, double total) const;
   void AddFrom(const Beam& beam, const SurfacePoint& at, Vector2 normal, double& rays, std::vector<Found>& found) const;
   // `factor` times all that was found, each way once.
   void AddOnce(const std::vector<Found>& all, double factor, std::vector<ChainedLight>& found) const;

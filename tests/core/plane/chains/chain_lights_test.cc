@@ -285,7 +285,7 @@ TEST(ChainLightsTest, ChancesHaveTheRightMean) {
   EXPECT_GT(few.lights().chance_share(ChainEffort::kFine), 0.5);
   std::mt19937_64 engine(7);
   std::uniform_real_distribution<double> uniform(0, 1);
-  constexpr int kSamples = 80000;
+  constexpr int kSamples = 250000;
   for (const Chains* chains : {&few, &some, &many}) {
     const ChainEffort effort = chains == &few ? ChainEffort::kFine : ChainEffort::kCoarse;
     for (const Point2 at : {Point2{0.2, 0.45}, Point2{1.4, 0.8}}) {
