@@ -47,7 +47,7 @@ std::vector<double> SplitPlaces(const Panel& panel, const std::vector<Cell>& cel
     double all = 0, sum = 0, mean = 0;
     for (const Cell& cell : cells) mean += cell.off * (cell.high - cell.low) / (panel.high - panel.low);
     const auto part = [&](const Cell& cell) {
-      return cell.off * (cell.high - cell.low) + kEvenly * mean * (cell.high - cell.low);
+      return (mean > 0 ? cell.off + kEvenly * mean : 1) * (cell.high - cell.low);
     };
     for (const Cell& cell : cells) all += part(cell);
     std::size_t next = 1;
