@@ -31,7 +31,8 @@ ErrorGrowth::ErrorGrowth(const std::vector<Row>& rows, std::vector<double> sourc
       equations_(half_.size()) {
   double most = 0;
   for (const double s : source_) most = std::max(most, s);
-  for (double& s : source_) s = std::max(s, kLeastSource * most);
+  for (double& s : source_)
+    if (s > 0) s = std::max(s, kLeastSource * most);
 }
 
 void ErrorGrowth::Look(std::size_t i) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <variant>
 
 namespace flatlight {
 
@@ -75,34 +74,6 @@ Spectrum Outlook::Direct(const Receiver& receiver) const {
   ExactValue value;
   lights_.Add(receiver, value);
   return direct + value.irradiance;
-}
-
-std::uint64_t Outlook::Signature(const Receiver& receiver) {
-  std::uint64_t signature = 0, last = 0;
-  const auto add = [&](std::uint64_t sign) {
-    signature = (signature ^ sign) * 0x9e3779b97f4a7c15u + (signature >> 29);
-  };
-  for (const VisiblePiece& piece : From(receiver)) {
-    if (!(piece.extent > 0)) continue;
-    const Element& element = scene_.element(piece.element);
-    // Where one arc of a circle ends and the next begins nothing happens.
-    const bool arc = element.kind == Element::Kind::kArc;
-    const std::uint64_t what =
-        arc ? static_cast<std::uint64_t>(element.curve) : static_cast<std::uint64_t>(piece.element);
-    const std::uint64_t sign =
-        8 * what + (arc ? 4 : 0) + (piece.side == Side::kFront ? 2 : 0) + (piece.after_sky ? 1 : 0) + 8;
-    if (arc && sign == last) continue;
-    last = sign;
-    add(sign);
-  }
-  for (const Light& light : scene_.lights()) {
-    const SurfacePoint from = {receiver.position, receiver.element};
-    const auto* point = std::get_if<PointLight>(&light.kind);
-    const bool lit = point ? caster_.Visible(from, {point->position, ElementId::kNone})
-                           : !caster_.ClosestHit(from, -std::get<DirectionalLight>(light.kind).direction).has_value();
-    add(lit ? 3 : 5);
-  }
-  return signature;
 }
 
 PieceEnd Outlook::Locate(const Receiver& receiver, ElementId element, const Part* part, const Edge& edge) const {

@@ -3,7 +3,6 @@
 #ifndef FLATLIGHT_CORE_PLANE_REFERENCE_OUTLOOK_H_
 #define FLATLIGHT_CORE_PLANE_REFERENCE_OUTLOOK_H_
 
-#include <cstdint>
 #include <vector>
 
 #include "core/plane/exact/edge.h"
@@ -48,8 +47,6 @@ class Outlook {
   const std::vector<VisiblePiece>& From(const Receiver& receiver);
   // Irradiance straight from emitters, lights and the environment at the receiver of the last call.
   Spectrum Direct(const Receiver& receiver) const;
-  // Tells apart what is seen from there: curves and sides in their order, and lights.
-  std::uint64_t Signature(const Receiver& receiver);
 
  private:
   void Add(const Receiver& receiver, ElementId element, Side side, const Part* part, const Edge& begin, const Edge& end,

@@ -74,6 +74,19 @@ void Legendre(double x, std::size_t count, double* p) {
   }
 }
 
+const double* LegendreAtGauss(std::size_t points) {
+  static const auto& tables = *new std::vector<std::vector<double>>([] {
+    std::vector<std::vector<double>> made(1);
+    for (std::size_t n = 1; n <= kMostGaussPoints; ++n) {
+      std::vector<double> table(n * n);
+      for (std::size_t i = 0; i < n; ++i) Legendre(Gauss(n).node[i], n, &table[i * n]);
+      made.push_back(std::move(table));
+    }
+    return made;
+  }());
+  return tables[points].data();
+}
+
 void LegendreWithSlopes(double x, std::size_t count, double* p, double* slope) {
   Legendre(x, count, p);
   slope[0] = 0;

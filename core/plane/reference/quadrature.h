@@ -22,6 +22,9 @@ void Legendre(double x, std::size_t count, double* p);
 // The derivatives as well.
 void LegendreWithSlopes(double x, std::size_t count, double* p, double* slope);
 
+// The first `points` polynomials at each of the nodes of the rule, node after node. Made once.
+const double* LegendreAtGauss(std::size_t points);
+
 // The points between the nodes of a Gauss rule where its polynomial is largest, and one beyond each outer node: one
 // more than the rule has.
 std::vector<double> PointsBetween(const GaussRule& rule);

@@ -14,13 +14,13 @@ namespace {
 
 constexpr std::size_t kNodes = kLightCoefficients;
 // The largest value at nodes need not be that of the panel, nor the residual's polynomial the residual.
-constexpr double kCaution = 1.5;
+constexpr double kCaution = 1.75;
 // Above this the largest bounds of all panels would add up to far more than there is.
-constexpr double kReflectsMuch = 0.9;
+constexpr double kReflectsMuch = 0.8;
 // Of bounds there.
 constexpr double kBoundTolerance = 1e-4;
 // At a kink coefficients fall by the square of their number; beside the last ones, so much of the mean may be missed.
-constexpr double kMissed = 0.2;
+constexpr double kMissed = 0.3;
 // Of a row's sum, in units of roundoff.
 constexpr double kRounding = 16 * kUnitRoundoff;
 
@@ -35,18 +35,22 @@ std::vector<double> NodesAndBetween() {
 
 }  // namespace
 
-Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, PanelMesh mesh, std::size_t channels,
-                     std::optional<std::uint32_t> max_bounces, double tolerance, Radiosity* before)
+Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, const Events& events, PanelMesh mesh,
+                     std::size_t channels, std::optional<std::uint32_t> max_bounces, double tolerance,
+                     Radiosity* before)
     : scene_(caster.scene()),
       charts_(charts),
+      events_(events),
       mesh_(std::move(mesh)),
+      cells_(mesh_.size()),
       channels_(channels),
       max_bounces_(max_bounces),
       to_coefficients_(CoefficientsFromValues(Gauss(kNodes).node)),
       to_residual_(CoefficientsFromValues(NodesAndBetween())),
       tolerance_(tolerance),
-      rows_{std::vector<Row>(mesh_.size() * kNodes), std::vector<Row>(mesh_.size() * (kNodes + 1))},
-      brightest_(channels, 0.0),
+      rows_{std::vector<Row>(mesh_.size() * kNodes), std::vector<Row>(mesh_.size() * (kNodes + 1)),
+            std::vector<std::vector<Row>>(mesh_.size())},
+      brightest_(mesh_.size() * channels, 0.0),
       light_(mesh_.size(), channels, kNodes),
       first_(mesh_.size(), channels, kNodes),
       before_(mesh_.size(), channels, kNodes),
@@ -56,10 +60,17 @@ Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, 
   FLATLIGHT_DCHECK(scene_.traits().lambertian && max_bounces != 0u);
   for (std::size_t c = 0; before && !max_bounces && c < channels; ++c) start_.push_back(before->OnNodesOf(mesh_, c));
   if (before) rows_before_ = std::move(before->rows_);
+  for (std::size_t i = 0; i < mesh_.size(); ++i) {
+    const Panel& panel = mesh_.panels()[i];
+    cells_[i] = CellsBetween(events_[PanelMesh::IndexOf(panel.element, panel.side)], panel.low, panel.high);
+    rows_.cells[i].resize(cells_[i].size());
+  }
   errors_.residual = first_residual_;
   errors_.size.assign(mesh_.size() * channels, 0.0);
   errors_.steep.assign(mesh_.size() * channels, 0.0);
   errors_.missed.assign(mesh_.size() * channels, 0.0);
+  for (auto* values : {&errors_.mean, &errors_.root_mean_square, &errors_.most})
+    values->assign(mesh_.size() * channels, 0.0);
   errors_.value.assign(mesh_.size() * channels, 0.0);
   errors_.slope.assign(mesh_.size() * channels, 0.0);
 }
@@ -68,6 +79,8 @@ std::size_t Radiosity::memory() const {
   std::size_t entries = 0, high_entries = 0;
   for (const Row& row : rows_.nodes) high_entries += row.panels.size();
   for (const Row& row : rows_.between) entries += row.panels.size();
+  for (const std::vector<Row>& rows : rows_.cells)
+    for (const Row& row : rows) entries += row.panels.size();
   return (entries + high_entries) * (kNodes * sizeof(double) + sizeof(std::uint32_t)) +
          high_entries * (kResidualCoefficients - kNodes) * sizeof(float);
 }
@@ -87,6 +100,11 @@ void Radiosity::BuildRows(RowBuilder& builder, std::size_t i) {
     Row* before = known ? &(node ? rows_before_.nodes : rows_before_.between)[panel.before * count + n / 2] : nullptr;
     Row& row = (node ? rows_.nodes : rows_.between)[i * count + n / 2];
     builder.Build(mesh_, chart.ReceiverAt(panel.element, panel.At(points[n]), panel.side), node, before, row);
+  }
+  for (std::size_t k = 0; k < cells_[i].size(); ++k) {
+    Row* before = known ? &rows_before_.cells[panel.before][k] : nullptr;
+    builder.Build(mesh_, chart.ReceiverAt(panel.element, cells_[i][k].place, panel.side), false, before,
+                  rows_.cells[i][k]);
   }
 }
 
@@ -163,9 +181,10 @@ bool Radiosity::Solve(const Loop& loop) {
     ToCoefficients(values, coefficients);
     for (std::size_t i = 0; i < mesh_.size(); ++i) std::copy_n(&coefficients[i * kNodes], kNodes, light.Of(i, c));
   };
-  brightest_[c] = scene_.environment().value[c];
-  for (const double value : accumulation_->values()) brightest_[c] = std::max(brightest_[c], value);
-  for (const Curve& curve : scene_.curves()) brightest_[c] = std::max(brightest_[c], curve.radiance.value[c]);
+  for (std::size_t r = 0; r < rows_.nodes.size(); ++r) {
+    double& brightest = brightest_[r / kNodes * channels_ + c];
+    brightest = std::max(brightest, std::abs(accumulation_->values()[r]));
+  }
   keep(accumulation_->values(), light_);
   keep(accumulation_->before(), before_);
   keep(source(), first_);
@@ -180,14 +199,15 @@ bool Radiosity::Solve(const Loop& loop) {
 void Radiosity::CheckAt(std::size_t i, const Row& row, const double* p, std::size_t c, double& residual,
                         double& rounding) const {
   const double half = HalfReflectance(i, c), direct = row.direct.value[c];
-  double sum = 0, size = direct;
+  double sum = 0, size = direct, brightest = row.brightest.value[c];
   for (std::size_t e = 0; e < row.panels.size(); ++e) {
     const double* light = before_.Of(row.panels[e], c);
     sum += row.TimesLight(e, light);
     size += row.low[e * kNodes] * std::abs(light[0]);
+    brightest = std::max(brightest, brightest_[row.panels[e] * channels_ + c]);
   }
   residual = half * (direct + sum) - light_.At(i, c, p);
-  rounding = half * (kRounding * size + row.coordinates * brightest_[c]);
+  rounding = half * (kRounding * size + row.coordinates * brightest);
 }
 
 void Radiosity::Check(std::size_t i) {
@@ -225,7 +245,9 @@ void Radiosity::Check(std::size_t i) {
       const double last = std::max(std::abs(errors_.residual.Of(i, c)[k]), std::abs(first_residual_.Of(i, c)[k]));
       missed = std::max(missed, kMissed * last);
     }
+    CheckCells(i, c);
     double& size = errors_.size[i * channels_ + c];
+    size = errors_.most[i * channels_ + c];
     double& steep = errors_.steep[i * channels_ + c];
     for (const double x : points) {
       double all[kResidualCoefficients], slopes[kResidualCoefficients];
@@ -236,13 +258,35 @@ void Radiosity::Check(std::size_t i) {
   }
 }
 
+// Beside what the polynomial of the residual says there may be more between two events.
+void Radiosity::CheckCells(std::size_t i, std::size_t c) {
+  const Panel& panel = mesh_.panels()[i];
+  double mean = 0, square = 0, most = 0;
+  for (std::size_t k = 0; k < cells_[i].size(); ++k) {
+    Cell& cell = cells_[i][k];
+    double off = 0, rounding = 0, p[kResidualCoefficients];
+    Legendre(panel.Local(cell.place), kResidualCoefficients, p);
+    CheckAt(i, rows_.cells[i][k], p, c, off, rounding);
+    off = kCaution * (std::abs(off - errors_.residual.At(i, c, p) / kCaution) - rounding);
+    if (!(off > 0)) continue;
+    const double share = (cell.high - cell.low) / (panel.high - panel.low);
+    cell.off = std::max(cell.off, off);
+    most = std::max(most, off);
+    mean += share * off;
+    square += share * off * off;
+  }
+  errors_.mean[i * channels_ + c] = mean;
+  errors_.root_mean_square[i * channels_ + c] = std::sqrt(square);
+  errors_.most[i * channels_ + c] = most;
+}
+
 void Radiosity::Spread(std::size_t i) {
   for (std::size_t c = 0; c < channels_; ++c) {
     for (std::size_t r = i * kNodes; r < (i + 1) * kNodes; ++r) {
       const Row& row = rows_.nodes[r];
       double sum = 0, sum_first = 0;
       for (std::size_t p = 0; p < row.panels.size(); ++p) {
-        const double missed = row.low[p * kNodes] * errors_.missed[row.panels[p] * channels_ + c];
+        const double missed = errors_.Missed(row.panels[p] * channels_ + c, &row.low[p * kNodes]);
         sum += std::abs(row.Times(p, errors_.residual.Of(row.panels[p], c))) + missed;
         if (max_bounces_) sum_first += std::abs(row.Times(p, first_residual_.Of(row.panels[p], c))) + missed;
       }
@@ -256,9 +300,10 @@ bool Radiosity::Bound(const Loop& loop) {
   const std::size_t c = channel_;
   const auto source = [&] {
     Values values(rows_.nodes.size());
-    const double left_out = max_bounces_ ? kRounding * brightest_[c] : 0;
-    for (std::size_t r = 0; r < values.size(); ++r)
-      values[r] = spread_[r * channels_ + c] + rounding_[r / kNodes * channels_ + c] + left_out;
+    for (std::size_t r = 0; r < values.size(); ++r) {
+      const std::size_t at = r / kNodes * channels_ + c;
+      values[r] = spread_[r * channels_ + c] + rounding_[at] + (max_bounces_ ? kRounding * brightest_[at] : 0);
+    }
     return values;
   };
   if (scene_.traits().max_reflectance > kReflectsMuch) {
@@ -294,7 +339,7 @@ std::vector<double> Radiosity::Influence() const {
     for (std::size_t p = 0; p < row.panels.size(); ++p) {
       double most = 0;
       for (std::size_t c = 0; c < channels_; ++c) {
-        const double missed = row.low[p * kNodes] * errors_.missed[row.panels[p] * channels_ + c];
+        const double missed = errors_.Missed(row.panels[p] * channels_ + c, &row.low[p * kNodes]);
         const double off = std::abs(row.Times(p, errors_.residual.Of(row.panels[p], c))) + missed;
         most = std::max(most, HalfReflectance(i, c) * off);
       }

@@ -15,6 +15,7 @@
 #include "core/plane/reference/panel_mesh.h"
 #include "core/plane/reference/reception.h"
 #include "core/plane/reference/row.h"
+#include "core/plane/reference/visibility_events.h"
 
 namespace flatlight {
 
@@ -34,16 +35,18 @@ class Radiosity {
   using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
 
   // Requires reflection by Lambertian curves alone, and max_bounces != 0 (absent: all). Only the first `channels` are
-  // computed. The caster and the charts must outlive this.
+  // computed. The caster, the charts and the events must outlive this.
   // `tolerance`: to which the equations at the nodes are solved, of their right sides; what is left over is part of the
   // bound. Rows of the mesh that this one was made of save most of the work for new ones, and its light is the guess
   // from which to solve.
   struct Rows {
     std::vector<Row> nodes;    // By panel, then node.
     std::vector<Row> between;  // By panel, then point between nodes.
+    std::vector<std::vector<Row>> cells;
   };
-  Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, PanelMesh mesh, std::size_t channels,
-            std::optional<std::uint32_t> max_bounces, double tolerance, Radiosity* before = nullptr);
+  Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, const Events& events, PanelMesh mesh,
+            std::size_t channels, std::optional<std::uint32_t> max_bounces, double tolerance,
+            Radiosity* before = nullptr);
 
   const PanelMesh& mesh() const { return mesh_; }
   // In bytes, of the rows built so far.
@@ -58,6 +61,8 @@ class Radiosity {
   const PanelLight& light() const { return light_; }
   const LightErrors& errors() const { return errors_; }
   LightErrors& errors() { return errors_; }
+  // What lies between events on a panel, if it has any.
+  const std::vector<Cell>& CellsOf(std::size_t panel) const { return cells_[panel]; }
   // What the residual of each panel adds to |T r| of others, summed over them.
   std::vector<double> Influence() const;
 
@@ -72,12 +77,15 @@ class Radiosity {
   bool Accumulate(const Loop& loop, const std::function<Values()>& source, const Values& start, double tolerance);
   // The light of a channel at the nodes of another mesh.
   Values OnNodesOf(const PanelMesh& mesh, std::size_t channel) const;
+  void CheckCells(std::size_t panel, std::size_t channel);
   void CheckAt(std::size_t panel, const Row& row, const double* p, std::size_t channel, double& residual,
                double& rounding) const;
 
   const Scene& scene_;
   const std::vector<Chart>& charts_;
+  const Events& events_;
   PanelMesh mesh_;
+  std::vector<std::vector<Cell>> cells_;  // By panel.
   std::size_t channels_;
   std::optional<std::uint32_t> max_bounces_;
   Values to_coefficients_, to_residual_;  // Matrices.
@@ -87,7 +95,7 @@ class Radiosity {
   std::size_t channel_ = 0;    // That is being solved or bounded.
   std::optional<Accumulation> accumulation_;
   std::optional<ErrorGrowth> growth_;
-  Values brightest_;                   // By channel: what no radiance is above.
+  Values brightest_;                   // By panel, then channel: the largest radiance at nodes.
   PanelLight light_, first_, before_;  // Of all bounces, of one, of one less than all.
   PanelLight first_residual_;
   LightErrors errors_;

@@ -16,6 +16,24 @@ constexpr double kRounding = 8 * kUnitRoundoff;
 
 }  // namespace
 
+// By Hölder's inequality: the largest weight times the mean, both roots of mean squares, or the mean weight times the
+// largest. Weights are known by their first moments, so where they are far from even they are underestimated, but then
+// these are large.
+double LightErrors::Missed(std::size_t index, const double* weights) const {
+  double factor = missed[index];
+  if (most[index] > 0 && weights[0] > 0) {
+    double largest = 1, square = 1;
+    for (std::size_t k = 1; k < kLightCoefficients; ++k) {
+      const double share = std::abs(weights[k]) / weights[0], count = static_cast<double>(2 * k + 1);
+      largest += count * share;
+      square += count * share * share;
+    }
+    factor =
+        std::max(factor, std::min({most[index], std::sqrt(square) * root_mean_square[index], largest * mean[index]}));
+  }
+  return factor * weights[0];
+}
+
 Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
                        const LightErrors* errors, int derivatives) {
   Received sum;
@@ -31,6 +49,7 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
                          const LightErrors* errors, int derivatives, const VisiblePiece& piece, Received& sum) {
   const PanelMesh::Range range = mesh.On(piece.element, piece.side);
   if (range.first == range.last) return;
+  if (derivatives == 0 && end_errors_.IsDoubtful(receiver, piece)) return;
   const Chart& chart = charts_[static_cast<std::size_t>(piece.element)];
   const double radius = OwnRadius(scene_, receiver, piece.element);
   const double low = std::min(piece.begin.u, piece.end.u), high = std::max(piece.begin.u, piece.end.u);
@@ -40,11 +59,13 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
     const Panel& panel = mesh.panels()[i];
     const double from = std::max(low, panel.low), to = std::min(high, panel.high);
     if (!(from < to)) continue;
-    double absolute[3] = {0, 0, 0};
+    double absolute[3] = {0, 0, 0}, weights_of_light[kLightCoefficients] = {};
     Spectrum off[3];
     const auto add_weights = [&](double u, const double(&weight)[3]) {
       Legendre(panel.Local(u), errors ? kResidualCoefficients : kLightCoefficients, p);
       for (int m = 0; m <= derivatives; ++m) absolute[m] += std::abs(weight[m]);
+      if (errors)
+        for (std::size_t k = 0; k < kLightCoefficients; ++k) weights_of_light[k] += weight[0] * p[k];
       for (std::size_t c = 0; c < channels; ++c) {
         const double radiance = light.At(i, c, p);
         const double residual = errors ? errors->residual.At(i, c, p) : 0;
@@ -71,13 +92,14 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
     if (!errors) continue;
     double share = 0;
     for (std::size_t c = 0; c < channels; ++c) {
-      const double own = errors->missed[i * channels + c], other = errors->value[i * channels + c];
+      const double missed = errors->Missed(i * channels + c, weights_of_light), other = errors->value[i * channels + c];
+      const double own = std::max(errors->missed[i * channels + c], errors->root_mean_square[i * channels + c]);
       for (int m = 0; m <= derivatives; ++m) {
         // Derivatives see more of what is not smooth.
-        const double known = std::abs(off[m].value[c]), missed = absolute[m] * own;
-        sum.error[m].value[c] += (m == 0 ? known + missed : 2 * known + 6 * missed) + absolute[m] * other;
+        const double known = std::abs(off[m].value[c]);
+        sum.error[m].value[c] += (m == 0 ? known + missed : 2 * known + 6 * absolute[m] * own) + absolute[m] * other;
       }
-      share = std::max(share, std::abs(off[0].value[c]) + absolute[0] * own);
+      share = std::max(share, std::abs(off[0].value[c]) + missed);
     }
     shares_.emplace_back(i, share);
   }

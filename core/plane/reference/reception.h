@@ -21,10 +21,15 @@ struct LightErrors {
   PanelLight residual;         // By how much the light's own reflection differs from it.
   std::vector<double> size;    // The largest residual, and
   std::vector<double> steep;   // the largest slope of it, by the panel's place in [-1, 1].
-  std::vector<double> missed;  // What it may be off by itself, where it is not smooth.
+  std::vector<double> missed;  // What it may be off by itself, where it is not smooth: the mean, on any panel;
+  std::vector<double> mean, root_mean_square, most;  // and as seen between events.
   // Bounds on how far the true light is from that reflection: by panel, then channel.
   std::vector<double> value;
   std::vector<double> slope;  // Of its derivative by arc length.
+
+  // What a receiver gets of what is missed, at most. `weights`: integrals of what it weighs the panel with, which is
+  // not negative, times Legendre polynomials, kLightCoefficients of them.
+  double Missed(std::size_t index, const double* weights) const;
 };
 
 // Reflected irradiance and its derivatives along the receiver.

@@ -16,11 +16,16 @@ namespace flatlight {
 namespace {
 
 constexpr int kFirstSteps = 2;
+// Light of n events, which have either sign, is as hard as that of about the root of n.
+constexpr double kRootAtFirst = 4;
+constexpr double kShortest = 1e-9;  // In the chart.
 constexpr int kMostRounds = 24;
 constexpr std::size_t kMostMemory = std::size_t{1} << 30;
 // A round that brings the error down by less than this is idle.
 constexpr double kIdle = 0.8;
 constexpr int kMostIdleRounds = 3;
+// An error that is larger yet tells nothing: there is no light.
+constexpr double kFarthest = 1e6;
 // Of what errors are relative to, and of the probe's mean.
 constexpr double kFloor = 0.01;
 constexpr std::size_t kPiecesPerThread = 4;
@@ -38,14 +43,10 @@ double Relative(double error, double size) {
 // Working memory of a thread.
 struct ReferenceSolver::Worker {
   Worker(const RayCaster& caster, const std::vector<Chart>& charts, const ExactOptions& options)
-      : rows(caster, charts),
-        reception(caster, charts),
-        outlook(caster, charts),
-        exact(caster.scene(), caster.bvh(), options) {}
+      : rows(caster, charts), reception(caster, charts), exact(caster.scene(), caster.bvh(), options) {}
 
   RowBuilder rows;
   Reception reception;
-  Outlook outlook;
   ExactSolver exact;
   std::vector<double> shares;  // Largest of the points it gathered, by panel.
 };
@@ -70,17 +71,21 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
     points_of_probe_.push_back(static_cast<double>(count));
   }
   direct_.resize(points_.size());
+  relative_before_.resize(points_.size());
+  idle_rounds_.resize(points_.size());
   const Scene& world = caster_->scene();
   // Direct light alone needs no panels.
   if (options_.max_bounces == 0u) {
     options_.max_bounces.reset();
+    events_.resize(2 * world.elements().size());
     StartMesh(PanelMesh(world.elements().size(), {}));
     return;
   }
   // What is reflected more often is nothing beside rounding.
   if (options_.max_bounces && UnitPower(world.traits().max_reflectance, *options_.max_bounces) < 1e-20)
     options_.max_bounces.reset();
-  StartMesh(SplitMeshAt(world, GradedMesh(world, meetings_, kFirstSteps), LightEvents(*caster_, charts_)));
+  finder_.emplace(*caster_, charts_, meetings_);
+  found_.resize(finder_->count());
 }
 
 ReferenceSolver::~ReferenceSolver() = default;
@@ -104,7 +109,7 @@ void ReferenceSolver::Return(std::unique_ptr<Worker> worker) {
 }
 
 void ReferenceSolver::StartMesh(PanelMesh mesh) {
-  radiosity_ = std::make_unique<Radiosity>(*caster_, charts_, std::move(mesh), channels_, options_.max_bounces,
+  radiosity_ = std::make_unique<Radiosity>(*caster_, charts_, events_, std::move(mesh), channels_, options_.max_bounces,
                                            tolerance_, radiosity_.get());
   coming_.assign(points_.size(), {});
   shares_.assign(panels(), 0.0);
@@ -115,7 +120,32 @@ void ReferenceSolver::StartMesh(PanelMesh mesh) {
   for (const auto& worker : idle_) worker->shares.assign(panels(), 0.0);
 }
 
+void ReferenceSolver::StartFirstMesh() {
+  const Scene& world = caster_->scene();
+  events_ = SortedEvents(world.elements().size(), found_);
+  finder_.reset();
+  found_.clear();
+  const PanelMesh graded =
+      SplitMeshAt(world, GradedMesh(world, meetings_, kFirstSteps), LightEvents(*caster_, charts_));
+  std::vector<std::vector<double>> places(graded.size());
+  for (std::size_t i = 0; i < graded.size(); ++i) {
+    const Panel& panel = graded.panels()[i];
+    const std::vector<Event>& events = events_[PanelMesh::IndexOf(panel.element, panel.side)];
+    const auto before = [](const Event& event, double u) { return event.u < u; };
+    const auto low = std::lower_bound(events.begin(), events.end(), panel.low, before);
+    const auto count = static_cast<std::size_t>(std::lower_bound(low, events.end(), panel.high, before) - low);
+    const auto parts = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)) / kRootAtFirst) + 1;
+    for (std::size_t k = 1; k < parts; ++k) {
+      const double u = low[static_cast<std::ptrdiff_t>(k * count / parts)].u;
+      if (u > (places[i].empty() ? panel.low : places[i].back()) + kShortest && u < panel.high - kShortest)
+        places[i].push_back(u);
+    }
+  }
+  StartMesh(SplitMesh(world, graded, places));
+}
+
 std::size_t ReferenceSolver::Count() const {
+  if (step_ == Step::kEvents) return found_.size();
   return IsWhole() ? 1 : step_ == Step::kPoints ? points_.size() : panels();
 }
 
@@ -154,6 +184,8 @@ bool ReferenceSolver::StepWhole(Executor& executor, int threads) {
 
 void ReferenceSolver::Work(Worker& worker, std::size_t i) {
   switch (step_) {
+    case Step::kEvents:
+      return finder_->Find(i, found_[i]);
     case Step::kRows:
       return radiosity_->BuildRows(worker.rows, i);
     case Step::kCheck:
@@ -167,7 +199,7 @@ void ReferenceSolver::Work(Worker& worker, std::size_t i) {
     case Step::kSplit: {
       const Panel& panel = radiosity_->mesh().panels()[i];
       const auto element = static_cast<std::size_t>(panel.element);
-      if (split_[i]) places_[i] = SplitPlaces(panel, charts_[element], meetings_[element], worker.outlook);
+      if (split_[i]) places_[i] = SplitPlaces(panel, radiosity_->CellsOf(i), meetings_[element]);
       return;
     }
     case Step::kSolve:
@@ -215,16 +247,20 @@ void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
   for (int c = 0; c < kMaxChannels; ++c) {
     value.irradiance[c] = std::max(value.irradiance[c], 0.0);
     size = std::max({size, value.irradiance[c], value.irradiance_error[c]});
+    if (!means_.empty()) size = std::max(size, kFloor * means_[probe_of_point_[point]][c]);
   }
+  coming_[point] = value;
+  // What comes no nearer to the target has no say in what to split.
+  if (idle_rounds_[point] == kMostIdleRounds) return;
   for (const auto& [panel, share] : worker.reception.shares()) {
     double& most = worker.shares[panel];
     most = std::max(most, Relative(share, options_.target_error * size));
   }
-  coming_[point] = value;
 }
 
 void ReferenceSolver::NextStep() {
   next_ = 0;
+  if (step_ == Step::kEvents) return StartFirstMesh();
   if (step_ == Step::kPoints) return EndPoints();
   if (step_ == Step::kSplit) return StartMesh(SplitMesh(caster_->scene(), radiosity_->mesh(), places_));
   step_ = static_cast<Step>(static_cast<int>(step_) + 1);
@@ -237,27 +273,41 @@ void ReferenceSolver::EndPoints() {
     Spectrum& mean = means[probe_of_point_[i]];
     mean = mean + (1 / points_of_probe_[probe_of_point_[i]]) * coming_[i].irradiance;
   }
-  const double before = relative_error_;
   relative_error_ = 0;
+  double to_improve = 0;  // The largest of points that still improve.
   for (std::size_t i = 0; i < points_.size(); ++i) {
+    double relative = 0;
     for (int c = 0; c < options_.channels; ++c) {
       const double size = std::max(coming_[i].irradiance[c], kFloor * means[probe_of_point_[i]][c]);
-      relative_error_ = std::max(relative_error_, Relative(coming_[i].irradiance_error[c], size));
+      relative = std::max(relative, Relative(coming_[i].irradiance_error[c], size));
     }
+    relative_error_ = std::max(relative_error_, relative);
+    if (rounds_ > 0 && relative > options_.target_error) {
+      const bool improves = relative <= kIdle * relative_before_[i];
+      if (improves) {
+        idle_rounds_[i] = 0;
+      } else if (idle_rounds_[i] < kMostIdleRounds) {
+        ++idle_rounds_[i];
+      }
+    }
+    relative_before_[i] = relative;
+    if (idle_rounds_[i] < kMostIdleRounds) to_improve = std::max(to_improve, relative);
   }
+  means_ = std::move(means);
   values_.swap(coming_);
   if (rounds_++ == 0) first_relative_error_ = relative_error_;
   if (relative_error_ <= options_.target_error) {
     state_ = State::kReached;
     return;
   }
-  idle_rounds_ = rounds_ > 1 && relative_error_ > kIdle * before ? idle_rounds_ + 1 : 0;
   // It may be the solver's own.
-  if (idle_rounds_ > 0) tolerance_ = std::max(kTighter * tolerance_, kLeastTolerance);
-  if (rounds_ == kMostRounds || idle_rounds_ == kMostIdleRounds) {
+  if (rounds_ > 1 && to_improve > kIdle * to_improve_) tolerance_ = std::max(kTighter * tolerance_, kLeastTolerance);
+  to_improve_ = to_improve;
+  if (rounds_ == kMostRounds || to_improve <= options_.target_error) {
     state_ = State::kExhausted;
     return;
   }
+  to_improve = std::min(to_improve, kFarthest);
   // Beside what panels add straight away there is what they add by way of others.
   std::vector<double> influence = radiosity_->Influence();
   double all = 0;
@@ -265,7 +315,7 @@ void ReferenceSolver::EndPoints() {
   for (std::size_t i = 0; i < panels(); ++i) {
     for (const auto& worker : idle_)
       shares_[i] = std::max(shares_[i], i < worker->shares.size() ? worker->shares[i] : 0);
-    if (all > 0) shares_[i] += influence[i] / all * relative_error_ / options_.target_error;
+    if (all > 0) shares_[i] += influence[i] / all * to_improve / options_.target_error;
   }
   split_ = PanelsToSplit(shares_);
   const auto splits = static_cast<double>(std::count(split_.begin(), split_.end(), 1));

@@ -17,6 +17,7 @@
 #include "core/plane/exact/light_solver.h"
 #include "core/plane/ray_caster.h"
 #include "core/plane/reference/radiosity.h"
+#include "core/plane/reference/visibility_events.h"
 
 namespace flatlight {
 
@@ -62,7 +63,7 @@ class ReferenceSolver {
 
  private:
   struct Worker;
-  enum class Step : std::uint8_t { kRows, kSolve, kCheck, kSpread, kBound, kSlopes, kPoints, kSplit };
+  enum class Step : std::uint8_t { kEvents, kRows, kSolve, kCheck, kSpread, kBound, kSlopes, kPoints, kSplit };
 
   std::unique_ptr<Worker> Take();
   void Return(std::unique_ptr<Worker> worker);
@@ -76,6 +77,7 @@ class ReferenceSolver {
   void NextStep();
   void EndPoints();
   void StartMesh(PanelMesh mesh);
+  void StartFirstMesh();
   bool IsWhole() const { return step_ == Step::kSolve || step_ == Step::kBound; }
 
   std::shared_ptr<const Scene> scene_;
@@ -84,15 +86,19 @@ class ReferenceSolver {
   std::size_t channels_;
   std::vector<Chart> charts_;
   std::vector<std::vector<double>> meetings_;
+  std::optional<EventFinder> finder_;  // Until the first mesh.
+  std::vector<std::vector<EventPlace>> found_;
+  Events events_;
   double tolerance_;  // To which equations are solved.
   LightSolver lights_;
   std::vector<const Receiver*> points_;
   std::vector<std::size_t> probe_of_point_;
   std::vector<double> points_of_probe_;
   std::vector<ExactValue> direct_;  // By point.
+  std::vector<Spectrum> means_;     // By probe, of irradiance after the round before.
 
   std::unique_ptr<Radiosity> radiosity_;
-  Step step_ = Step::kRows;
+  Step step_ = Step::kEvents;
   std::size_t next_ = 0;            // In the step.
   std::vector<ExactValue> coming_;  // By point, of this round.
   std::vector<double> shares_;      // By panel: the largest share of the error that is allowed.
@@ -103,7 +109,10 @@ class ReferenceSolver {
   std::vector<ExactValue> values_;
   double relative_error_ = 0, first_relative_error_ = 0;
   int rounds_ = 0;
-  int idle_rounds_ = 0;  // That brought little.
+  // By point: the error after the round before in units of what it is relative to, and how many rounds brought little.
+  std::vector<double> relative_before_;
+  std::vector<int> idle_rounds_;
+  double to_improve_ = 0;  // The largest of points that still improved.
 
   std::mutex mutex_;
   std::vector<std::unique_ptr<Worker>> idle_;  // Guarded by mutex_.

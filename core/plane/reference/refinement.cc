@@ -4,11 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <numeric>
-
-#include "core/plane/reference/panel_light.h"
-#include "core/plane/reference/quadrature.h"
 
 namespace flatlight {
 namespace {
@@ -21,6 +17,8 @@ constexpr double kShortest = 1e-12;
 constexpr std::size_t kMostEvents = 6;
 constexpr double kRatio = 0.25;
 constexpr double kMostLeft = 0.9;
+constexpr double kParts = 4;
+constexpr double kEvenly = 0.1;
 
 }  // namespace
 
@@ -40,35 +38,28 @@ std::vector<char> PanelsToSplit(const std::vector<double>& shares) {
   return split;
 }
 
-std::vector<double> SplitPlaces(const Panel& panel, const Chart& chart, const std::vector<double>& meetings,
-                                Outlook& outlook) {
+std::vector<double> SplitPlaces(const Panel& panel, const std::vector<Cell>& cells,
+                                const std::vector<double>& meetings) {
   if (panel.high - panel.low < 4 * kShortest) return {};
-  const auto sign_at = [&](double u) { return outlook.Signature(chart.ReceiverAt(panel.element, u, panel.side)); };
-  constexpr std::size_t kLooks = 2 * kLightCoefficients;
-  struct Change {
-    double low, high;
-    std::uint64_t sign;  // At the low end.
-  };
-  std::vector<Change> changes;
-  double before = panel.At(-1 + 1e-7);
-  std::uint64_t sign = sign_at(before);
-  for (std::size_t i = 1; i <= kLooks && changes.size() <= kMostEvents; ++i) {
-    const double x = 2 * static_cast<double>(i) / kLooks - 1;
-    const double u = panel.At(std::min(x, 1 - 1e-7));
-    const std::uint64_t next = sign_at(u);
-    if (next != sign) changes.push_back({before, u, sign});
-    before = u, sign = next;
-  }
-  // Where there are many, none is looked for.
   std::vector<double> places;
-  if (changes.size() > kMostEvents) changes.clear();
-  for (const Change& change : changes) {
-    double low = change.low, high = change.high;
-    for (double middle = 0.5 * (low + high); low < middle && middle < high && high - low > 1e-15;
-         middle = 0.5 * (low + high))
-      (sign_at(middle) == change.sign ? low : high) = middle;
-    places.push_back(0.5 * (low + high));
+  if (cells.size() > kMostEvents + 1) {
+    // In parts that are off by about as much.
+    double all = 0, sum = 0, mean = 0;
+    for (const Cell& cell : cells) mean += cell.off * (cell.high - cell.low) / (panel.high - panel.low);
+    const auto part = [&](const Cell& cell) {
+      return (mean > 0 ? cell.off + kEvenly * mean : 1) * (cell.high - cell.low);
+    };
+    for (const Cell& cell : cells) all += part(cell);
+    std::size_t next = 1;
+    for (std::size_t k = 0; k + 1 < cells.size(); ++k) {
+      sum += part(cells[k]);
+      if (sum * kParts < static_cast<double>(next) * all) continue;
+      places.push_back(cells[k].high);
+      while (static_cast<double>(next) * all <= sum * kParts) ++next;
+    }
+    if (!places.empty()) return places;
   }
+  for (std::size_t k = 0; k + 1 < cells.size(); ++k) places.push_back(cells[k].high);
   if (!places.empty()) {
     // Events at an end leave the rest as it was.
     double from = panel.low, widest = 0, middle = 0;

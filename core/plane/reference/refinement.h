@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "core/plane/reference/outlook.h"
 #include "core/plane/reference/panel_mesh.h"
+#include "core/plane/reference/visibility_events.h"
 
 namespace flatlight {
 
@@ -14,11 +14,11 @@ namespace flatlight {
 // allowed, 1, or of what there is.
 std::vector<char> PanelsToSplit(const std::vector<double>& shares);
 
-// Where to split a panel, in its chart and in their order: where the view from it changes, if it does so at few places;
-// else near an end where another curve meets it (`meetings` of its element), else in the middle. Empty if it is too
-// short to be split.
-std::vector<double> SplitPlaces(const Panel& panel, const Chart& chart, const std::vector<double>& meetings,
-                                Outlook& outlook);
+// Where to split a panel, in its chart and in their order: at events, where light is off most between them (`cells`),
+// if it has any; else near an end where another curve meets it (`meetings` of its element), else in the middle. Empty
+// if it is too short to be split.
+std::vector<double> SplitPlaces(const Panel& panel, const std::vector<Cell>& cells,
+                                const std::vector<double>& meetings);
 
 }  // namespace flatlight
 

@@ -9,6 +9,7 @@
 #include "core/math/check.h"
 #include "core/plane/exact/edge.h"
 #include "core/plane/reference/kernel.h"
+#include "core/plane/reference/quadrature.h"
 
 namespace flatlight {
 
@@ -26,6 +27,12 @@ EdgeErrors EndErrors::Add(const Receiver& receiver, ElementId element, const Pie
       on != nullptr && end.own && end.edge.kind == Edge::Kind::kVertex && (end.u == 0 ? on->from > 0 : on->to < 1);
   if (joint) joints_ = std::max(joints_, radiance * BoundErrors(end.edge, receiver.curvature, followed).s);
   return BoundErrors(end.edge, receiver.curvature, joint ? known : followed, receiver.curvature_change);
+}
+
+bool EndErrors::IsDoubtful(const Receiver& receiver, const VisiblePiece& piece) const {
+  const double known = scene_->coordinate_error();
+  return piece.extent <= BoundErrors(piece.begin.edge, receiver.curvature, known).s +
+                             BoundErrors(piece.end.edge, receiver.curvature, known).s;
 }
 
 double SineBetween(const Chart& chart, const Receiver& receiver, double low, double high) {
@@ -49,10 +56,15 @@ void RowBuilder::Build(const PanelMesh& mesh, const Receiver& receiver, bool hig
     row.stretches = std::move(before->stretches);
     row.coordinates = before->coordinates;
     row.direct = before->direct;
+    row.brightest = before->brightest;
   } else {
     row.coordinates = 0;
+    row.brightest = scene_.environment();
     EndErrors errors(scene_);
     for (const VisiblePiece& piece : outlook_.From(receiver)) {
+      if (errors.IsDoubtful(receiver, piece)) continue;
+      const Spectrum emitted = scene_.curve_of(piece.element).EmittedRadiance(piece.side);
+      for (int c = 0; c < kMaxChannels; ++c) row.brightest[c] = std::max(row.brightest[c], emitted[c]);
       const PanelMesh::Range range = mesh.On(piece.element, piece.side);
       const double low = std::min(piece.begin.u, piece.end.u), up = std::max(piece.begin.u, piece.end.u);
       if (range.first < range.last && low < up) row.stretches.push_back({piece.element, piece.side, low, up});
@@ -90,6 +102,22 @@ bool RowBuilder::Copy(const Panel& panel, bool high, Row& row) {
   return true;
 }
 
+// A panel that is seen as a whole, from afar: light from it is as good as a polynomial of as many coefficients as there
+// are Gauss points, and higher polynomials on the panel give nothing.
+void RowBuilder::AddWhole(const Chart& chart, const Panel& panel, const Receiver& receiver, double roundness,
+                          std::size_t count, double* moments) const {
+  const std::size_t points = count_.For(roundness);
+  const GaussRule& rule = Gauss(points);
+  const double* p = LegendreAtGauss(points);
+  const double half = 0.5 * (panel.high - panel.low);
+  const std::size_t own = std::min(count, points);
+  for (std::size_t i = 0; i < points; ++i, p += points) {
+    const Chart::Place place = chart.At(panel.At(rule.node[i]));
+    const double weight = half * rule.weight[i] * place.speed * Kernel(receiver, place, panel.side, 0).Value();
+    for (std::size_t k = 0; k < own; ++k) moments[k] += weight * p[k];
+  }
+}
+
 void RowBuilder::AddStretch(const PanelMesh& mesh, const Receiver& receiver, const Row::Stretch& stretch, bool high,
                             Row& row) {
   const PanelMesh::Range range = mesh.On(stretch.element, stretch.side);
@@ -108,18 +136,24 @@ void RowBuilder::AddStretch(const PanelMesh& mesh, const Receiver& receiver, con
     row.panels.push_back(static_cast<std::uint32_t>(i));
     if (Copy(panel, high, row)) continue;
     double moments[kResidualCoefficients] = {};
-    const auto add_weight = [&](double u, double weight) {
-      Legendre(panel.Local(u), count, p);
-      for (std::size_t k = 0; k < count; ++k) moments[k] += weight * p[k];
-    };
-    const auto add = [&](double u, const Chart::Place& place, double weight) {
-      add_weight(u, weight * Kernel(receiver, place, stretch.side, radius).Value());
-    };
-    // What is left of a panel that runs into the receiver.
-    const auto rest = [&](double u, double begin, double end) {
-      add_weight(u, SineBetween(chart, receiver, begin, end));
-    };
-    ForEachPoint(chart, receiver.position, radius != 0, count_, from, to, 0, add, rest);
+    const bool whole = from == panel.low && to == panel.high && radius == 0;
+    const double roundness = whole ? chart.Roundness(receiver.position, from, to) : 0;
+    if (whole && roundness >= PointCount::kNearest) {
+      AddWhole(chart, panel, receiver, roundness, count, moments);
+    } else {
+      const auto add_weight = [&](double u, double weight) {
+        Legendre(panel.Local(u), count, p);
+        for (std::size_t k = 0; k < count; ++k) moments[k] += weight * p[k];
+      };
+      const auto add = [&](double u, const Chart::Place& place, double weight) {
+        add_weight(u, weight * Kernel(receiver, place, stretch.side, radius).Value());
+      };
+      // What is left of a panel that runs into the receiver.
+      const auto rest = [&](double u, double begin, double end) {
+        add_weight(u, SineBetween(chart, receiver, begin, end));
+      };
+      ForEachPoint(chart, receiver.position, radius != 0, high ? high_count_ : count_, from, to, 0, add, rest);
+    }
     row.low.insert(row.low.end(), moments, moments + kLightCoefficients);
     for (std::size_t k = kLightCoefficients; k < count; ++k) row.high.push_back(static_cast<float>(moments[k]));
   }

@@ -27,6 +27,7 @@ struct Row {
 
   Spectrum direct;                 // Irradiance straight from emitters, lights and the environment.
   double coordinates = 0;          // What it is off by, as coordinates are, for light of radiance 1.
+  Spectrum brightest;              // Radiance of what emits in its sight, the largest.
   std::vector<Stretch> stretches;  // Of what has panels, in the order of theta; each is seen once.
   std::vector<std::uint32_t> panels;
   // Irradiance from each Legendre polynomial on each of them: kLightCoefficients, and the rest up to
@@ -56,6 +57,7 @@ class RowBuilder {
       : scene_(caster.scene()),
         charts_(charts),
         count_(kLightCoefficients - 1, kKernelDigits),
+        high_count_(kResidualCoefficients - 1, kKernelDigits / 2),
         outlook_(caster, charts) {}
 
   // `before`, if not null: the row of the same receiver with the mesh that this one was made of. What is in it already,
@@ -65,12 +67,14 @@ class RowBuilder {
 
  private:
   void AddStretch(const PanelMesh& mesh, const Receiver& receiver, const Row::Stretch& stretch, bool high, Row& row);
+  void AddWhole(const Chart& chart, const Panel& panel, const Receiver& receiver, double roundness, std::size_t count,
+                double* moments) const;
   // Copies the panel's entry, if there was one.
   bool Copy(const Panel& panel, bool high, Row& row);
 
   const Scene& scene_;
   const std::vector<Chart>& charts_;
-  PointCount count_;
+  PointCount count_, high_count_;
   Outlook outlook_;
   const Row* before_ = nullptr;
   std::size_t next_before_ = 0;  // Entries come in one order in both rows.
@@ -89,6 +93,8 @@ class EndErrors {
   // Of one end, without what is known of all joints together.
   EdgeErrors Add(const Receiver& receiver, ElementId element, const PieceEnd& end, double radiance);
   double joints() const { return 4 * joints_; }
+  // Whether the piece is not known to be seen at all: rounding lets light through between two curves that meet.
+  bool IsDoubtful(const Receiver& receiver, const VisiblePiece& piece) const;
 
  private:
   const Scene* scene_;

@@ -56,4 +56,73 @@ std::shared_ptr<const Scene> RandomRoom(std::uint64_t seed) {
   return maker.Build();
 }
 
+std::shared_ptr<const Scene> HardRoom(std::uint64_t seed) {
+  Random random(~seed);
+  const auto chance = [&](double p) { return random.Between(0, 1) < p; };
+  const auto power_between = [&](double low, double high) {  // Even in the exponent.
+    return std::pow(10, random.Between(low, high));
+  };
+  const double white = 1 - power_between(-4, -0.3);  // What the brightest reflect.
+  const bool alike = chance(0.3);
+  const auto look = [&] {
+    return Look{.reflectance = {alike ? white : chance(0.1) ? 0 : white * random.Between(chance(0.5) ? 0.9 : 0.1, 1)}};
+  };
+  SceneMaker maker;
+  const double shape = random.Between(0, 1);
+  if (shape < 0.35) {
+    // One corner's angle is small.
+    const double angle = kTurn / 360 * power_between(0.5, 1.8);
+    maker.Polyline("room", {{-1, -0.5}, {1, -0.5}, {1, -0.5 + 2 * std::tan(angle)}}, true, look());
+  } else if (shape < 0.55) {
+    maker.Arc("room", {{0, 0}, 1, random.Between(0, kTurn), kTurn}, look());
+  } else if (shape < 0.8) {
+    maker.Polyline("room", {{-1, -0.5}, {1, -0.5}, {1, 0.7}, {random.Between(-0.9, 0.9), 1}, {-1, 0.5}}, true, look());
+  } else {
+    maker.Segment("room", {-1, -0.5}, {1, -0.5}, look());
+    maker.Arc("dome", {{0.2, -0.5}, 0.8, 0, random.Between(1, 3)}, look());
+    maker.Environment({random.Between(0, 0.5)});
+  }
+  // A place inside of every room.
+  const auto place = [&]() -> Point2 {
+    return shape < 0.35 ? Point2{random.Between(0.2, 0.8), -0.5 + 1e-2 * random.Between(1, 4)}
+                        : Point2{random.Between(-0.55, 0.55), random.Between(-0.45, 0.4)};
+  };
+  const double scale = shape < 0.35 ? 0.1 : 1;
+  const Point2 at = place();
+  Look lamp = look();
+  lamp.radiance = {1};
+  lamp.two_sided = chance(0.5);
+  const double lamp_size = scale * power_between(-2, -0.5);
+  maker.Segment("lamp", {at.x + lamp_size, at.y + 0.01 * scale}, {at.x, at.y + 0.02 * scale}, lamp);
+  if (chance(0.2)) maker.Light(PointLightDescription{place(), {2}});
+  const int things = 1 + static_cast<int>(random.Between(0, 5));
+  for (int i = 0; i < things; ++i) {
+    const Point2 p = place();
+    const double size = scale * power_between(-1.5, -0.3), angle = random.Between(0, kTurn);
+    const double gap = power_between(-6, -1.5);
+    const Vector2 u{std::cos(angle), std::sin(angle)}, v{-u.y, u.x};
+    const std::string name = "thing" + std::to_string(i);
+    const double kind = random.Between(0, 1);
+    if (kind < 0.25) {
+      maker.Segment(name, p, p + size * u, look());
+    } else if (kind < 0.5) {
+      // Two plates, nearly touching.
+      maker.Segment(name, p, p + size * u, look());
+      maker.Segment(name + " twin", p + gap * v + random.Between(-0.5, 0.5) * size * u, p + gap * v + size * u, look());
+    } else if (kind < 0.65) {
+      maker.Arc(name, {p, size / 2, angle, chance(0.5) ? -kTurn : random.Between(0.5, 6)}, look());
+    } else if (kind < 0.8) {
+      // Two balls, nearly touching.
+      maker.Arc(name, {p, size / 2, angle, -kTurn}, look());
+      maker.Arc(name + " twin", {p + (0.75 * size + gap) * u, size / 4, angle, -kTurn}, look());
+    } else {
+      // On the floor of a room that has one, or just above it.
+      const double x = p.x, height = chance(0.5) ? -0.5 : -0.5 + gap;
+      maker.Segment(name, {x, height}, {x + 0.3 * size * u.x, height + size * (0.1 + std::abs(u.y))}, look());
+    }
+  }
+  maker.Probe("room", 24).Probe("thing0", 8).Probe("thing0", 4, Side::kBack).Probe("lamp", 4);
+  return maker.Build();
+}
+
 }  // namespace flatlight

@@ -71,6 +71,41 @@ TEST(ReferenceBoundsTest, NoErrorIsLargerThanItsBound) {
   EXPECT_LT(hessian.MedianCaution(), 300);
 }
 
+// Small angles, gaps of a millionth, things that touch, tiny lamps, nearly white walls. A point in a gap may get next
+// to no light: there the target need not be reached, but the bound holds.
+TEST(ReferenceBoundsTest, BoundsHoldInHardRooms) {
+  Counts counts;
+  for (const std::uint64_t seed : {5, 7, 13, 16, 38, 46, 4040}) {
+    const auto scene = HardRoom(seed);
+    ReferenceOptions options = Options(1e-2);
+    options.derivatives = 0;
+    const SolvedReference coarse = SolveReference(scene, options);
+    options.target_error = 1e-5;
+    const SolvedReference fine = SolveReference(scene, options);
+    for (std::size_t i = 0; i < fine.values.size(); ++i) {
+      counts.Add(coarse.values[i].irradiance[0], coarse.values[i].irradiance_error[0], fine.values[i].irradiance[0],
+                 fine.values[i].irradiance_error[0]);
+    }
+  }
+  EXPECT_EQ(counts.values, 7 * 40);
+  EXPECT_EQ(counts.beyond, 0);
+  EXPECT_LT(counts.MedianCaution(), 30);
+}
+
+// The inside of a closed box in a lit room: no light, no error, and no say in how the rest is solved.
+TEST(ReferenceBoundsTest, DarkPlacesDoNotStopTheRest) {
+  SceneMaker maker = SquareRoom({.reflectance = {0.7}}, 4);
+  maker.Segment("lamp", {0.4, 0.9}, {-0.4, 0.9}, {.radiance = {1}});
+  maker.Polyline("box", {{-0.2, -0.2}, {0.2, -0.2}, {0.2, 0.2}, {-0.2, 0.2}}, true, {.reflectance = {0.7}});
+  maker.Probe("box", 8);
+  const SolvedReference solved = SolveReference(maker.Build(), Options(1e-6));
+  EXPECT_EQ(solved.state, ReferenceSolver::State::kReached);
+  for (std::size_t i = 16; i < 24; ++i) {
+    EXPECT_EQ(solved.values[i].irradiance[0], 0);
+    EXPECT_EQ(solved.values[i].irradiance_error[0], 0);
+  }
+}
+
 // Where walls reflect nearly all light, errors are many bounces old; the bound follows them.
 TEST(ReferenceBoundsTest, BoundsStaySharpWhereWallsReflectNearlyAll) {
   for (const double reflectance : {0.9, 0.99, 0.9999}) {
