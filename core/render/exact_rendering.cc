@@ -7,6 +7,7 @@
 #include "core/render/exact_field.h"
 #include "core/render/probe_points.h"
 #include "core/render/skips.h"
+#include "core/render/state_stream.h"
 
 namespace flatlight {
 namespace {
@@ -61,6 +62,20 @@ bool ExactRendering::Work(std::size_t first, std::size_t last, const Cancellatio
   }
   solvers_.Return(std::move(solver));
   return i == last;
+}
+
+std::string ExactRendering::Checkpoint(std::size_t most_bytes) const {
+  StateWriter writer(most_bytes);
+  writer(work_);
+  for (std::size_t i = 0; i < work_.done_items() && writer.ok(); ++i) writer(values_[i]);
+  return writer.Take();
+}
+
+bool ExactRendering::Resume(std::string_view checkpoint) {
+  StateReader reader(checkpoint);
+  reader(work_);
+  for (std::size_t i = 0; reader.ok() && i < work_.done_items(); ++i) reader(values_[i]);
+  return reader.AtEnd();
 }
 
 RenderProgress ExactRendering::Progress() const {

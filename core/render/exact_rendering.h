@@ -34,6 +34,8 @@ class ExactRendering final : public Rendering {
   EndReason end_reason() const override { return EndReason::kConverged; }
   RenderProgress Progress() const override;
   std::shared_ptr<const Field> Snapshot() const override;
+  std::string Checkpoint(std::size_t most_bytes) const override;
+  bool Resume(std::string_view checkpoint) override;
 
  private:
   // Evaluates [first, last); false if cancelled.

@@ -9,6 +9,7 @@
 
 #include "core/render/probe_points.h"
 #include "core/render/skips.h"
+#include "core/render/state_stream.h"
 
 namespace flatlight {
 namespace {
@@ -72,7 +73,7 @@ void FluenceRendering::Advance(Executor& executor, const Cancellation& cancellat
                                Clock::Duration budget) {
   if (done()) return;
   const Clock::Time begin = clock.Now();
-  if (!start_) start_ = begin;
+  if (!start_) start_ = begin - Clock::Duration(resumed_.value_or(0));
   const double budget_seconds = Seconds(budget).count();
   const double seconds_before = seconds_;
   while (!done() && !cancellation.cancelled()) {
@@ -80,7 +81,9 @@ void FluenceRendering::Advance(Executor& executor, const Cancellation& cancellat
     double wanted = seconds_per_path_ > 0 ? std::min(kRoundSeconds, budget_seconds) / seconds_per_path_ : 1;
     // Measured over few paths times mean little.
     wanted = std::min(wanted, 4.0 * static_cast<double>(paths) + 16);
-    const std::uint64_t left = std::min<std::uint64_t>(most_paths_ - paths, kMostRoundPaths);
+    // Where tests are due must not depend on how long rounds take.
+    const std::uint64_t end = target_error_ ? std::min(most_paths_, next_test_) : most_paths_;
+    const std::uint64_t left = std::min<std::uint64_t>(end - paths, kMostRoundPaths);
     const auto round = std::min(static_cast<std::uint64_t>(std::max(wanted, 1.0)), left);
     const Clock::Time before = clock.Now();
     if (!AddPaths(static_cast<std::uint32_t>(round), executor, cancellation)) return;
@@ -106,6 +109,7 @@ bool FluenceRendering::AddPaths(std::uint32_t paths, Executor& executor, const C
 }
 
 void FluenceRendering::DecideEnd(Clock::Time now) {
+  now_ = now;
   const std::uint64_t paths = replicates_[0].paths;
   // One decision for all pixels hardly biases any (THEORY 18 B12.3), and seldom ones are cheap.
   if (target_error_ && paths >= next_test_) {
@@ -115,6 +119,24 @@ void FluenceRendering::DecideEnd(Clock::Time now) {
   }
   if (paths >= most_paths_) end_reason_ = EndReason::kSamplesDone;
   if (time_limit_ && Seconds(now - *start_).count() >= *time_limit_) end_reason_ = EndReason::kTimeLimit;
+}
+
+std::string FluenceRendering::Checkpoint(std::size_t most_bytes) const {
+  if (!start_ && !resumed_) return {};
+  StateWriter writer(most_bytes);
+  writer(start_ ? (now_ - *start_).count() : *resumed_);
+  State(*this, writer);
+  return writer.Take();
+}
+
+bool FluenceRendering::Resume(std::string_view checkpoint) {
+  if (done()) return false;
+  StateReader reader(checkpoint);
+  reader(resumed_.emplace());
+  State(*this, reader);
+  for (const Replicate& replicate : replicates_) reader.Require(replicate.paths == replicates_[0].paths);
+  reader.Require(end_reason_.has_value() || replicates_[0].paths < most_paths_);
+  return reader.AtEnd();
 }
 
 RenderProgress FluenceRendering::Progress() const {

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/plane/light_tracing/fluence_image.h"
@@ -30,14 +32,27 @@ class FluenceRendering final : public Rendering {
   RenderProgress Progress() const override;
   // Of probes that are no pictures nothing.
   std::shared_ptr<const Field> Snapshot() const override;
+  std::string Checkpoint(std::size_t most_bytes) const override;
+  bool Resume(std::string_view checkpoint) override;
 
  private:
   struct Replicate {
     std::vector<FluenceImage> images;  // Of each picture.
     std::uint64_t paths = 0;
     double rays = 0;
+
+    template <class Self, class Stream>
+    static void State(Self& self, Stream& stream) {
+      stream.Filled(self.images);
+      stream(self.paths, self.rays);
+    }
   };
 
+  // What a checkpoint consists of, beside the time since the start.
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.replicates_, self.next_test_, self.worst_error_, self.seconds_, self.end_reason_);
+  }
   // `paths` more of every replicate; false if cancelled before all had them.
   bool AddPaths(std::uint32_t paths, Executor& executor, const Cancellation& cancellation);
   void DecideEnd(Clock::Time now);
@@ -59,8 +74,10 @@ class FluenceRendering final : public Rendering {
   std::uint64_t next_test_ = 64;  // Paths of a replicate.
   std::optional<double> worst_error_;
   std::optional<Clock::Time> start_;
-  double seconds_ = 0;           // Spent so far.
-  double seconds_per_path_ = 0;  // Of all replicates together; measured, leaves no trace in results.
+  std::optional<Clock::Duration::rep> resumed_;  // Time since the start, until the first Advance after it.
+  Clock::Time now_;                              // At the last decision.
+  double seconds_ = 0;                           // Spent so far.
+  double seconds_per_path_ = 0;                  // Of all replicates together; measured, leaves no trace in results.
   std::optional<EndReason> end_reason_;
 };
 

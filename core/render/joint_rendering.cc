@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/render/state_stream.h"
+
 namespace flatlight {
 
 void JointRendering::Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
@@ -46,6 +48,23 @@ std::shared_ptr<const Field> JointRendering::Snapshot() const {
     if (!pictures->probes[probe].irradiance.empty()) field->probes[probe] = pictures->probes[probe];
   }
   return field;
+}
+
+std::string JointRendering::Checkpoint(std::size_t most_bytes) const {
+  const std::string points = points_->Checkpoint(most_bytes);
+  const std::string pictures = pictures_->Checkpoint(most_bytes - points.size());
+  if (points.empty() && pictures.empty()) return {};
+  StateWriter writer(most_bytes);
+  writer(points, pictures);
+  return writer.Take();
+}
+
+bool JointRendering::Resume(std::string_view checkpoint) {
+  StateReader reader(checkpoint);
+  std::string points, pictures;
+  reader(points, pictures);
+  return reader.AtEnd() && (points.empty() || points_->Resume(points)) &&
+         (pictures.empty() || pictures_->Resume(pictures));
 }
 
 }  // namespace flatlight

@@ -3,6 +3,8 @@
 #define FLATLIGHT_CORE_RENDER_JOINT_RENDERING_H_
 
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "core/render/rendering.h"
 
@@ -21,6 +23,9 @@ class JointRendering final : public Rendering {
   EndReason end_reason() const override;
   RenderProgress Progress() const override;
   std::shared_ptr<const Field> Snapshot() const override;
+  // Of whichever of the two has one; the other begins anew.
+  std::string Checkpoint(std::size_t most_bytes) const override;
+  bool Resume(std::string_view checkpoint) override;
 
  private:
   std::unique_ptr<Rendering> points_;

@@ -26,6 +26,13 @@ class OrderedWork {
   double seconds() const { return seconds_; }  // Spent so far.
   void Finish() { done_items_ = items_; }
 
+  // For a stream of states.
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.done_items_, self.seconds_);
+    stream.Require(self.done_items_ <= self.items_);
+  }
+
   // For about `budget`, until done or cancelled.
   void Advance(Executor& executor, int max_threads, const Cancellation& cancellation, const Clock& clock,
                Clock::Duration budget, const Work& work);

@@ -3,6 +3,8 @@
 #define FLATLIGHT_CORE_RENDER_PATH_TRACING_RENDERING_H_
 
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "core/plane/ray_caster.h"
 #include "core/render/progressive_sampling.h"
@@ -22,6 +24,8 @@ class PathTracingRendering final : public Rendering {
   EndReason end_reason() const override { return sampling_.end_reason(); }
   RenderProgress Progress() const override { return sampling_.Progress(); }
   std::shared_ptr<const Field> Snapshot() const override;
+  std::string Checkpoint(std::size_t most_bytes) const override { return sampling_.Checkpoint(most_bytes); }
+  bool Resume(std::string_view checkpoint) override { return sampling_.Resume(checkpoint); }
 
  private:
   std::shared_ptr<const Scene> scene_;

@@ -40,6 +40,13 @@ void PointBlocks::UpdateVariances(std::size_t point) {
   }
 }
 
+void PointBlocks::Resume() {
+  first_open_ = 0;
+  for (std::size_t point = 0; point < points(); ++point) {
+    if (blocks(point) > 0) UpdateVariances(point);
+  }
+}
+
 MeanEstimate PointBlocks::Estimate(std::size_t point, std::size_t channel, Halves halves,
                                    const Missable& missable) const {
   std::array<double, kReplicates> means;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "core/execution/cancellation.h"
@@ -62,6 +63,20 @@ class PointBlocks {
   bool Advance(Executor& executor, int max_threads, const Cancellation& cancellation, const Clock& clock,
                Clock::Time until);
 
+  // For a stream of states: the blocks done and the goals.
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream.Filled(self.trees_);
+    stream(self.goals_);
+    stream.Filled(self.doubts_);
+    stream.Filled(self.ranges_);
+    stream(self.total_blocks_, self.rays_);
+    stream.Require(self.goals_.empty() || self.goals_.size() == self.trees_.size());
+    if constexpr (!std::is_const_v<Self>) {
+      if (stream.ok()) self.Resume();
+    }
+  }
+
  private:
   // The blocks [first, first + 2^level) of a point.
   struct Piece {
@@ -84,6 +99,8 @@ class PointBlocks {
 
   Shard CutShard(Cursor& cursor) const;
   void Work(Shard& shard, const Cancellation& cancellation) const;
+  // Finds again what follows from the blocks.
+  void Resume();
   // Brings variances_ up to the blocks of a point.
   void UpdateVariances(std::size_t point);
   // True if everything was complete.

@@ -25,6 +25,11 @@ class PointSampler {
     double step = 0;       // The largest change of one sample that stratification may hide (see EstimateMean).
     double brightest = 0;  // What a rare sample may have above the common ones, about.
     double rounding = 0;   // Of a sample's arithmetic.
+
+    template <class Self, class Stream>
+    static void State(Self& self, Stream& stream) {
+      stream(self.step, self.brightest, self.rounding);
+    }
   };
   // Of each channel.
   virtual void Doubts(std::size_t point, std::span<Doubt> doubts) const = 0;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/render/state_stream.h"
+
 namespace flatlight {
 namespace {
 
@@ -45,7 +47,11 @@ void ProgressiveSampling::Advance(Executor& executor, int max_threads, const Can
                                   const Clock& clock, Clock::Duration budget) {
   now_ = clock.Now();
   const Clock::Time until = Later(now_, budget);
-  if (!start_.has_value()) {
+  if (resumed_.has_value()) {
+    start_ = now_ - Clock::Duration(resumed_->since_start);
+    round_start_ = now_ - Clock::Duration(resumed_->since_round_start);
+    resumed_.reset();
+  } else if (!start_.has_value()) {
     start_ = now_;
     PlanRound(now_);
   }
@@ -255,6 +261,43 @@ ProgressiveSampling::PointValue ProgressiveSampling::Value(std::size_t point) co
   for (std::size_t c = 0; c < channels(); ++c) value.estimates.push_back(halves_[point].Estimate(halves, c));
   value.samples = halves_[point].Samples(value.samples);
   return value;
+}
+
+template <class Self, class Stream>
+void ProgressiveSampling::State(Self& self, Stream& stream) {
+  stream(self.blocks_);
+  bool has_unread = self.unread_.has_value();
+  stream(has_unread);
+  stream.Require(has_unread == self.unread_.has_value());
+  if (has_unread && stream.ok()) stream(*self.unread_);
+  std::uint64_t points_with_halves = self.halves_.size();
+  stream(points_with_halves);
+  stream.Require(points_with_halves == self.halves_.size());
+  for (auto& halves : self.halves_) {
+    if (stream.ok()) CrossedHalves::State(halves, stream, self.channels());
+  }
+  stream(self.pilot_means_, self.round_is_whole_, self.end_reason_, self.worst_error_, self.round_start_blocks_);
+  for (const ProbeMeans& means : self.pilot_means_) {
+    stream.Require(means.empty() || means.size() == self.probe_ends_.size() * self.channels());
+  }
+}
+
+std::string ProgressiveSampling::Checkpoint(std::size_t most_bytes) const {
+  if (!start_.has_value() && !resumed_.has_value()) return {};
+  const Elapsed elapsed =
+      resumed_.value_or(start_ ? Elapsed{(now_ - *start_).count(), (now_ - round_start_).count()} : Elapsed{});
+  StateWriter writer(most_bytes);
+  writer(elapsed.since_start, elapsed.since_round_start);
+  State(*this, writer);
+  return writer.Take();
+}
+
+bool ProgressiveSampling::Resume(std::string_view checkpoint) {
+  StateReader reader(checkpoint);
+  Elapsed& elapsed = resumed_.emplace();
+  reader(elapsed.since_start, elapsed.since_round_start);
+  State(*this, reader);
+  return reader.AtEnd();
 }
 
 RenderProgress ProgressiveSampling::Progress() const {

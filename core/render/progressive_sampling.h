@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/render/point_blocks.h"
@@ -55,7 +57,19 @@ class ProgressiveSampling {
   std::size_t channels() const { return blocks_.channels(); }
   double rays() const { return blocks_.rays(); }
 
+  // As Rendering's.
+  std::string Checkpoint(std::size_t most_bytes) const;
+  bool Resume(std::string_view checkpoint);
+
  private:
+  // What a checkpoint consists of, beside the times since the sampling and its round began.
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream);
+  struct Elapsed {
+    Clock::Duration::rep since_start = 0;
+    Clock::Duration::rep since_round_start = 0;
+  };
+
   // Means of values over each probe, channel after channel.
   using ProbeMeans = std::vector<double>;
 
@@ -96,6 +110,7 @@ class ProgressiveSampling {
   std::optional<EndReason> end_reason_;
   std::optional<double> worst_error_;
   std::optional<Clock::Time> start_;
+  std::optional<Elapsed> resumed_;  // Until the first Advance after it.
   Clock::Time now_;
   Clock::Time round_start_;
   double round_start_blocks_ = 0;

@@ -10,6 +10,7 @@
 #include "core/render/onward_points.h"
 #include "core/render/probe_points.h"
 #include "core/render/skips.h"
+#include "core/render/state_stream.h"
 #include "core/render/world_units.h"
 #include "core/sampling/hash.h"
 
@@ -143,7 +144,7 @@ void RayTracingRendering::AddChained(const Receiver& receiver, const std::vector
 void RayTracingRendering::Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
                                   Clock::Duration budget) {
   const Clock::Time begin = clock.Now();
-  if (!start_) start_ = begin;
+  if (!start_) start_ = begin - Clock::Duration(resumed_.value_or(0));
   const double seconds_before = seconds_;
   const int threads = std::max(std::min(max_threads_, executor.threads()), 1);
   while (!done() && !cancellation.cancelled()) {
@@ -168,6 +169,7 @@ void RayTracingRendering::Advance(Executor& executor, const Cancellation& cancel
     unfinished_.resize(whole);
     unfinished_.erase(unfinished_.begin(), unfinished_.begin() + static_cast<std::ptrdiff_t>(points * kReplicates));
     const Clock::Time after = clock.Now();
+    now_ = after;
     const double spent = Seconds(after - before).count();
     tasks_per_second_ = spent > 0 ? static_cast<double>(tasks) / spent : double{kMostTasks};
     seconds_ = seconds_before + Seconds(after - begin).count();
@@ -262,6 +264,33 @@ void RayTracingRendering::PlanPass(Clock::Time now) {
     const std::uint32_t next = pass_rays_ * (open_ended ? 2 : 4);
     BeginPass(last_rays_ > 0 && next * 2 > last_rays_ ? last_rays_ : next);
   }
+}
+
+template <class Self, class Stream>
+void RayTracingRendering::State(Self& self, Stream& stream) {
+  stream.Filled(self.estimates_);
+  stream.Filled(self.decisions_);
+  stream(self.pass_rays_, self.pass_, self.next_task_, self.unfinished_, self.rays_, self.work_done_, self.worst_error_,
+         self.seconds_, self.end_reason_);
+  for (const std::size_t point : self.pass_) stream.Require(point < self.estimates_.size());
+  stream.Require(self.pass_rays_ > 0 && self.next_task_ <= self.pass_.size() * kReplicates &&
+                 self.unfinished_.size() == self.next_task_ % kReplicates);
+}
+
+std::string RayTracingRendering::Checkpoint(std::size_t most_bytes) const {
+  if (!tree_ || (!start_ && !resumed_)) return {};
+  StateWriter writer(most_bytes);
+  writer(start_ ? (now_ - *start_).count() : *resumed_);
+  State(*this, writer);
+  return writer.Take();
+}
+
+bool RayTracingRendering::Resume(std::string_view checkpoint) {
+  if (!tree_) return false;
+  StateReader reader(checkpoint);
+  reader(resumed_.emplace());
+  State(*this, reader);
+  return reader.AtEnd();
 }
 
 RenderProgress RayTracingRendering::Progress() const {

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/plane/exact/light_solver.h"
@@ -31,6 +33,8 @@ class RayTracingRendering final : public Rendering {
   EndReason end_reason() const override { return *end_reason_; }
   RenderProgress Progress() const override;
   std::shared_ptr<const Field> Snapshot() const override;
+  std::string Checkpoint(std::size_t most_bytes) const override;
+  bool Resume(std::string_view checkpoint) override;
 
  private:
   static constexpr int kOrders = 3;  // Irradiance, gradient, Hessian.
@@ -41,6 +45,11 @@ class RayTracingRendering final : public Rendering {
   struct Estimate {
     std::array<Spectrum, kQuantities> value, error;
     std::uint32_t rays = 0;  // Of a replicate's gather; 0: there is none yet.
+
+    template <class Self, class Stream>
+    static void State(Self& self, Stream& stream) {
+      stream(self.value, self.error, self.rays);
+    }
   };
   // What one gather gives.
   struct Gathered {
@@ -48,9 +57,17 @@ class RayTracingRendering final : public Rendering {
     double steepest = 0;  // Inverse distance of the nearest hit.
     double cast = 0;
     bool whole = false;
+
+    template <class Self, class Stream>
+    static void State(Self& self, Stream& stream) {
+      stream(self.value, self.steepest, self.cast, self.whole);
+    }
   };
   enum class Decision : std::uint8_t { kOpen, kLast, kFinal };
 
+  // What a checkpoint consists of, beside the time since the start.
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream);
   void BeginPass(std::uint32_t rays);
   void PlanPass(Clock::Time now);
   Gathered Gather(std::size_t point, std::size_t replicate, const Cancellation& cancellation) const;
@@ -82,6 +99,8 @@ class RayTracingRendering final : public Rendering {
   double work_done_ = 0;  // In rays of the first level.
   std::optional<double> worst_error_;
   std::optional<Clock::Time> start_;
+  std::optional<Clock::Duration::rep> resumed_;  // Time since the start, until the first Advance after it.
+  Clock::Time now_;                              // At the end of the last Advance.
   double seconds_ = 0;
   std::optional<EndReason> end_reason_;
 };

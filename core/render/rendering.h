@@ -3,8 +3,11 @@
 #ifndef FLATLIGHT_CORE_RENDER_RENDERING_H_
 #define FLATLIGHT_CORE_RENDER_RENDERING_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "core/execution/cancellation.h"
 #include "core/execution/clock.h"
@@ -38,6 +41,14 @@ class Rendering {
   virtual EndReason end_reason() const = 0;  // Requires done().
   virtual RenderProgress Progress() const = 0;
   virtual std::shared_ptr<const Field> Snapshot() const = 0;
+
+  // The work done so far as bytes, a function of that work alone (and, with a time limit, of the time it took). Empty
+  // where it cannot be kept, or takes more than `most_bytes`: the rendering then begins anew, and ends with the same
+  // bits. Not to be called between a cancelled Advance and the next one.
+  virtual std::string Checkpoint(std::size_t /*most_bytes*/) const { return {}; }
+  // Goes on from a checkpoint of a rendering of the same scene and plan, by the same build. To be called before
+  // Advance. False if it is none: this rendering is then of no use, start another.
+  virtual bool Resume(std::string_view /*checkpoint*/) { return false; }
 };
 
 // `plan` must come from MakePlan for this scene. Takes its index from `indexes`, or makes its own.

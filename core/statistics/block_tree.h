@@ -67,6 +67,13 @@ class BlockTree {
     return std::min({fits, aligned, max_level});
   }
 
+  // What it holds, for a stream of states (see core/render/state_stream.h). The width stays.
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.blocks_, self.nodes_);
+    stream.Require(self.nodes_.size() == static_cast<std::size_t>(std::popcount(self.blocks_)) * self.width_);
+  }
+
  private:
   std::size_t width_;
   std::uint64_t blocks_ = 0;

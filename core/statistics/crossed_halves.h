@@ -50,6 +50,15 @@ class CrossedHalves {
   // Forgets the decisions; the next Offer brings later counts.
   void Reopen() { decided_ = {}; }
 
+  // For a stream of states; `channels` estimates belong to each value.
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream, std::size_t channels) {
+    stream(self.decided_, self.samples_, self.values_);
+    for (std::size_t half = 0; half < 2; ++half) {
+      stream.Require(!self.decided_[half] || self.values_[half].size() == channels);
+    }
+  }
+
  private:
   std::array<bool, 2> decided_{};
   std::array<double, 2> samples_{};

@@ -25,6 +25,11 @@ struct MeanEstimate {
   // (mean - truth) / standard error has variance 1: the t distribution of nu degrees of freedom, which the plain ratio
   // follows if the values are normal, has variance nu / (nu - 2). Never below the rounding.
   double StandardError() const;
+
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.mean, self.variance, self.degrees_of_freedom, self.unresolved, self.rounding);
+  }
 };
 
 // An event that values may all have missed: a sample that falls to the other side of an edge, or on something bright.

@@ -20,6 +20,10 @@ struct SampleRange {
     low = std::min(low, other.low);
     high = std::max(high, other.high);
   }
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.low, self.high);
+  }
   // 0 if there is no sample.
   double Width() const { return std::max(high - low, 0.0); }
 };

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // flatlightd: the server as a program.
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -13,6 +15,7 @@
 #include "server/app/token.h"
 #include "server/service/build_version.h"
 #include "server/service/server.h"
+#include "server/store/backup.h"
 
 namespace flatlight {
 namespace {
@@ -20,6 +23,8 @@ namespace {
 constexpr int kCannotServe = 1;
 constexpr int kBadUsage = 2;
 constexpr std::chrono::seconds kDrainGrace{3};
+// With what was written until then the next process goes on as well: it is safe at any moment.
+constexpr unsigned kHardStopSeconds = 25;
 
 int Fail(const absl::Status& why, int exit_status) {
   std::fprintf(stderr, "flatlightd: %s\n", std::string(why.message()).c_str());
@@ -27,9 +32,17 @@ int Fail(const absl::Status& why, int exit_status) {
 }
 
 int Run(const DaemonOptions& options) {
+  if (!options.back_up_to.empty() || !options.restore_from.empty()) {
+    const absl::Status done = !options.back_up_to.empty() ? BackUp(options.data, options.back_up_to)
+                                                          : RestoreBackup(options.restore_from, options.data);
+    return done.ok() ? 0 : Fail(done, kCannotServe);
+  }
   ServerOptions server_options;
   server_options.address = options.listen;
   server_options.threads = options.threads;
+  server_options.data = options.data;
+  server_options.checkpoint_interval =
+      std::chrono::milliseconds(static_cast<std::int64_t>(1000 * options.checkpoint_interval));
   server_options.token = TakeTokenFromEnvironment();
   if (!options.token_file.empty()) {
     auto token = ReadTokenFile(options.token_file);
@@ -44,6 +57,8 @@ int Run(const DaemonOptions& options) {
   // Programs that start this one read the address from this line.
   std::fprintf(stderr, "flatlightd %s listening on %s\n", BuildVersion().c_str(), (*server)->address().c_str());
   signals.Await(options.exit_with_parent);
+  std::signal(SIGALRM, [](int) { _exit(0); });
+  alarm(kHardStopSeconds);
   (*server)->Drain(kDrainGrace);
   return 0;
 }

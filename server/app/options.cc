@@ -19,7 +19,24 @@ std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int p
       ->check(CLI::Range(1, kMaxThreads));
   app.add_option("--token-file", options.token_file,
                  "a file holding the token that callers must present; default: the variable FLATLIGHT_TOKEN, or none");
+  app.add_option("--data", options.data,
+                 "a folder for jobs, results and scenes, made if it is missing; default: they end with the server");
+  app.add_option("--checkpoint-interval", options.checkpoint_interval,
+                 "seconds between checkpoints of a job, at least (with --data)")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 3600.0));
   app.add_flag("--exit-with-parent", options.exit_with_parent, "end when standard input ends");
+  CLI::App* backup =
+      app.add_subcommand("backup", "copy the folder of a server, which may be running: --data DIR BACKUP");
+  backup->add_option("BACKUP", options.back_up_to, "a new folder")->required();
+  CLI::App* restore = app.add_subcommand("restore", "make a new folder from a backup: --data DIR BACKUP");
+  restore->add_option("BACKUP", options.restore_from, "what backup made")->required();
+  for (CLI::App* command : {backup, restore}) {
+    command->fallthrough();
+    command->final_callback([&options] {
+      if (options.data.empty()) throw CLI::RequiredError("--data");
+    });
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -12,8 +12,12 @@ namespace flatlight {
 struct DaemonOptions {
   std::string listen = "127.0.0.1:7000";
   int threads = 1;
-  std::string token_file;         // Empty: the environment's FLATLIGHT_TOKEN, if there is one.
-  bool exit_with_parent = false;  // End when standard input does.
+  std::string token_file;          // Empty: the environment's FLATLIGHT_TOKEN, if there is one.
+  std::string data;                // Empty: nothing outlives the process.
+  double checkpoint_interval = 3;  // s.
+  std::string back_up_to;          // A new folder: copy `data` there, and serve nothing.
+  std::string restore_from;        // A backup: make `data` from it, and serve nothing.
+  bool exit_with_parent = false;   // End when standard input does.
 };
 
 // The options, or the exit status of a program that is done already (help, version: 0; bad usage: 2).

@@ -29,6 +29,8 @@ ShutdownSignals::ShutdownSignals() {
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
   // A client that goes away is an error of a call, not of the process.
   std::signal(SIGPIPE, SIG_IGN);
+  // So is a file that may not grow.
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 void ShutdownSignals::Await(bool watch_stdin) const {

@@ -170,4 +170,21 @@ v1::Plan PlanToProto(const Plan& plan) {
   return proto;
 }
 
+Plan PlanFromProto(const v1::Plan& proto) {
+  Plan plan;
+  Diagnostics diagnostics;  // There are none in what PlanToProto wrote.
+  plan.settings = SettingsFromProto(proto.settings(), diagnostics);
+  for (const v1::Plan::Skip& skip : proto.skips()) {
+    SkipDecision decision = SkipDecision::kNotApplicable;
+    if (skip.decision() == v1::Plan::Skip::TAKEN) decision = SkipDecision::kTaken;
+    if (skip.decision() == v1::Plan::Skip::DISABLED) decision = SkipDecision::kDisabled;
+    plan.skips.push_back({skip.name(), decision, skip.reason()});
+  }
+  for (const v1::Plan::Pass& pass : proto.passes()) {
+    plan.passes.push_back({pass.name(), pass.points(), pass.samples(), pass.expected_rays()});
+  }
+  plan.summary = proto.summary();
+  return plan;
+}
+
 }  // namespace flatlight

@@ -13,6 +13,8 @@ namespace flatlight {
 Settings SettingsFromProto(const v1::Settings& proto, Diagnostics& diagnostics);
 v1::Settings SettingsToProto(const Settings& settings);
 v1::Plan PlanToProto(const Plan& plan);
+// What callers see of a plan: enough to show it, not to render by it.
+Plan PlanFromProto(const v1::Plan& proto);
 
 }  // namespace flatlight
 

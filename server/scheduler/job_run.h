@@ -2,10 +2,14 @@
 #ifndef FLATLIGHT_SERVER_SCHEDULER_JOB_RUN_H_
 #define FLATLIGHT_SERVER_SCHEDULER_JOB_RUN_H_
 
+#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "core/execution/cancellation.h"
 #include "core/execution/clock.h"
 #include "core/render/rendering.h"
@@ -26,6 +30,14 @@ struct JobRun {
     kEnded
   };
 
+  // All that is needed to go on with a job of a process before.
+  struct Restored {
+    std::shared_ptr<const JobSpec> spec;
+    std::shared_ptr<const Scene> scene;
+    std::string checkpoint;  // As it was given to the store; empty: there is none.
+  };
+  using Restore = std::function<absl::StatusOr<Restored>()>;
+
   explicit JobRun(const Clock& clock) : stopwatch(clock) {}
 
   bool has_place() const { return stage != Stage::kWaiting && stage != Stage::kEnded; }
@@ -36,8 +48,9 @@ struct JobRun {
   // Where it stands in the queues for a place and for its preparation.
   FairQueue<std::shared_ptr<JobRun>>::Place Entry() const { return {spec->job_class, spec->owner}; }
 
-  std::shared_ptr<const JobSpec> spec;  // Never changes.
+  std::shared_ptr<const JobSpec> spec;  // Never changes, but that a restored job gets its scene's outline.
   std::shared_ptr<const Scene> scene;   // Until it is prepared.
+  Restore restore;                      // Of a job of a process before; until then.
   Cancellation cancellation;
   Stage stage = Stage::kWaiting;
   bool pause_wanted = false;             // Of a slice under way: by its end.
@@ -46,9 +59,13 @@ struct JobRun {
   Stopwatch stopwatch;                   // Stands still while the job is paused.
   Clock::Time started;                   // On the stopwatch.
   Clock::Time published;
-  // Both the runner's alone.
+  // The runner's alone.
   Clock::Duration snapshot_cost{0};
   absl::Status failure;
+  Clock::Time saved;  // When a checkpoint was made last, or tried.
+  double own_checkpoint_seconds = 0;
+  std::atomic<double> checkpoint_seconds = 0;  // Of processor time, on the store's thread.
+  std::atomic<bool> saving = false;            // The last checkpoint is not written yet.
 };
 
 }  // namespace flatlight

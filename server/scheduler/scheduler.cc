@@ -32,26 +32,60 @@ Scheduler::Scheduler(const SchedulerOptions& options, JobStore& store, Executor&
 Scheduler::~Scheduler() { Stop(); }
 
 absl::StatusOr<JobRecord> Scheduler::Submit(std::shared_ptr<const JobSpec> spec, std::shared_ptr<const Scene> scene,
-                                            const std::optional<RequestKey>& key) {
+                                            const Submission& submission, const std::optional<RequestKey>& key) {
   auto run = std::make_shared<JobRun>(clock_);
   run->spec = std::move(spec);
   run->scene = std::move(scene);
-  absl::StatusOr<JobRecord> job;
+  const auto draining = MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down");
   {
     const std::lock_guard lock(mutex_);
-    if (stopping_) return MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down");
+    if (stopping_) return draining;
     if (absl::Status allowed = CheckQuota(run->spec->owner); !allowed.ok()) return allowed;
-    job = store_.Insert({run->spec, std::make_shared<JobState>(run->state)}, key);
-    if (!job.ok() || job->spec->id != run->spec->id) return job;
-    untold_.push_back(run->spec->id);
-    runs_[run->spec->id] = run;
     ++jobs_of_[run->spec->owner];
-    accounts_.Enter(run->spec->owner);
-    waiting_.Push(run->Entry(), run);
-    Admit();
+  }
+  // Writing may take a while: without the lock.
+  auto job = store_.Insert({run->spec, std::make_shared<JobState>(run->state)}, submission, key);
+  bool too_late = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!job.ok() || job->spec->id != run->spec->id) {
+      FreeQuota(run->spec->owner);
+      return job;
+    }
+    too_late = stopping_;
+    if (!too_late) Enter(run);
+  }
+  if (too_late) {
+    store_.Delete(run->spec->id).IgnoreError();
+    return draining;
   }
   TellListener();
   return job;
+}
+
+void Scheduler::Resubmit(const JobRecord& job, JobRun::Restore restore) {
+  auto run = std::make_shared<JobRun>(clock_);
+  run->spec = job.spec;
+  run->state = *job.state;
+  run->restore = std::move(restore);
+  {
+    const std::lock_guard lock(mutex_);
+    ++jobs_of_[run->spec->owner];
+    Enter(run);
+  }
+  TellListener();
+}
+
+void Scheduler::Enter(const RunPtr& run) {
+  untold_.push_back(run->spec->id);
+  runs_[run->spec->id] = run;
+  accounts_.Enter(run->spec->owner);
+  waiting_.Push(run->Entry(), run);
+  Admit();
+}
+
+void Scheduler::FreeQuota(const std::string& owner) {
+  if (const auto jobs = jobs_of_.find(owner); --jobs->second == 0) jobs_of_.erase(jobs);
 }
 
 absl::Status Scheduler::CheckQuota(const std::string& owner) const {
@@ -111,9 +145,10 @@ void Scheduler::TellPlaces() {
 void Scheduler::Publish(JobRun& run) {
   run.published = clock_.Now();
   if (run.state.start_time) run.state.elapsed_seconds = Seconds(run.stopwatch.Now() - run.started);
-  ++run.state.sequence;
+  // Watchers hear of a restored job when its probes are known.
+  if (run.restore == nullptr || HasEnded(run.state.phase)) ++run.state.sequence;
   // The job may have been deleted; then nobody wants to know.
-  store_.Update(run.spec->id, std::make_shared<JobState>(run.state)).IgnoreError();
+  store_.Update({run.spec, std::make_shared<JobState>(run.state)}).IgnoreError();
   untold_.push_back(run.spec->id);
 }
 
@@ -137,7 +172,7 @@ void Scheduler::End(JobRun& run, JobPhase phase) {
   run.state.end_time = std::chrono::system_clock::now();
   Publish(run);
   runs_.erase(run.spec->id);
-  if (const auto jobs = jobs_of_.find(run.spec->owner); --jobs->second == 0) jobs_of_.erase(jobs);
+  FreeQuota(run.spec->owner);
   Admit();
   run_stopped_.notify_all();
   if (stopping_ && runs_.empty()) ready_changed_.notify_all();
@@ -171,7 +206,7 @@ absl::StatusOr<JobRecord> Scheduler::Cancel(const JobId& id) {
     }
   }
   TellListener();
-  return store_.Get(id);
+  return store_.AwaitEnd(id);
 }
 
 void Scheduler::EnterPause(JobRun& run) {
@@ -247,14 +282,26 @@ absl::StatusOr<JobRecord> Scheduler::Resume(const JobId& id) {
 }
 
 absl::Status Scheduler::Delete(const JobId& id) {
+  // Writing may take a while: without the lock.
+  if (absl::Status deleted = store_.Delete(id); !deleted.ok()) return deleted;
   {
     const std::lock_guard lock(mutex_);
-    if (absl::Status deleted = store_.Delete(id); !deleted.ok()) return deleted;
     untold_.push_back(id);
     if (const RunPtr run = Find(id)) RequestCancel(run);
   }
   TellListener();
   return absl::OkStatus();
+}
+
+void Scheduler::Suspend(JobRun& run) {
+  if (run.has_place()) accounts_.GivePlace(run.spec->owner);
+  if (run.state.phase != JobPhase::kPaused) accounts_.Leave(run.spec->owner);
+  run.stage = JobRun::Stage::kEnded;
+  run.pause_wanted = false;
+  runs_.erase(run.spec->id);
+  FreeQuota(run.spec->owner);
+  run_stopped_.notify_all();
+  if (runs_.empty()) ready_changed_.notify_all();
 }
 
 void Scheduler::Stop() {
@@ -266,7 +313,17 @@ void Scheduler::Stop() {
       for (const auto& [id, run] : runs_) runs.push_back(run);
       // Those that wait first, lest each that ends lets one of them in.
       std::partition(runs.begin(), runs.end(), [](const RunPtr& run) { return run->stage == JobRun::Stage::kWaiting; });
-      for (const RunPtr& run : runs) RequestCancel(run);
+      for (const RunPtr& run : runs) {
+        if (!store_.durable()) {
+          RequestCancel(run);
+        } else if (run->stage == JobRun::Stage::kWaiting) {
+          waiting_.Remove(run->Entry(), run);
+          Suspend(*run);
+        } else if (run->stage == JobRun::Stage::kReady && !run->cancellation.cancelled()) {
+          ready_.Remove(run->Turn(), run);
+          urgent_.push_back(run);
+        }
+      }
     }
   }
   ready_changed_.notify_all();

@@ -24,6 +24,7 @@
 #include "server/scheduler/accounts.h"
 #include "server/scheduler/admission_pace.h"
 #include "server/scheduler/fair_queue.h"
+#include "server/scheduler/job_checkpoint.h"
 #include "server/scheduler/job_run.h"
 #include "server/scheduler/task_queue.h"
 #include "server/store/job_store.h"
@@ -43,6 +44,8 @@ struct SchedulerOptions {
   Clock::Duration slice = std::chrono::milliseconds(20);
   Clock::Duration publish_interval =
       std::chrono::milliseconds(40);  // Longer where a snapshot costs more than a tenth of it.
+  // Of one job; longer where they would cost more than a hundredth of its processor time.
+  Clock::Duration checkpoint_interval = std::chrono::seconds(3);
 };
 
 class Scheduler {
@@ -61,7 +64,9 @@ class Scheduler {
   // returns that one.
   // RESOURCE_EXHAUSTED if the owner has too many jobs that have not ended.
   absl::StatusOr<JobRecord> Submit(std::shared_ptr<const JobSpec> spec, std::shared_ptr<const Scene> scene,
-                                   const std::optional<RequestKey>& key);
+                                   const Submission& submission, const std::optional<RequestKey>& key);
+  // Accepts a job that the store has restored; `restore` is called when its turn comes. An error of it ends the job.
+  void Resubmit(const JobRecord& job, JobRun::Restore restore);
   // Stops the work and returns the ended job, after at most one shard's time. An ended job stays as it is. What is
   // being prepared (for a million curves about a second's work) is prepared to its end, for nothing, after the job has
   // ended.
@@ -72,7 +77,8 @@ class Scheduler {
   absl::StatusOr<JobRecord> Resume(const JobId& id);
   // Cancels and removes.
   absl::Status Delete(const JobId& id);
-  // Cancels all jobs, refuses new ones, and waits until nothing works any more.
+  // Refuses new jobs, and waits until nothing works any more. Jobs of a durable store are left as they are, with a
+  // checkpoint; others are cancelled.
   void Stop();
 
  private:
@@ -81,11 +87,21 @@ class Scheduler {
   absl::Status CheckQuota(const std::string& owner) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Gives free places to those who wait. To be called after each change of places or of what waits.
   void Admit() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Enter(const RunPtr& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void FreeQuota(const std::string& owner) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void TellPlaces() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void PrepareNext();
   void RunSlices();
   RunPtr NextReady() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void RunSlice(JobRun& run);
+  std::unique_ptr<Rendering> StartOrResume(const JobSpec& spec, const std::shared_ptr<const Scene>& scene,
+                                           const std::optional<JobCheckpoint>& checkpoint) const;
+  // Writes down how far a job is, if it is time: between two slices of it.
+  void MaybeCheckpoint(const RunPtr& run, double cpu_seconds);
+  void SaveCheckpoint(const RunPtr& run, std::size_t most_bytes);
+  // When the server goes down: the job is left to the next one.
+  bool LeavesJobs() const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) { return stopping_ && store_.durable(); }
+  void Suspend(JobRun& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // After its preparation or a slice: to the queue in which it waits for the next one.
   void Requeue(const RunPtr& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Stores the run's state under the next sequence number, for TellListener.

@@ -16,6 +16,12 @@ namespace {
 
 // A snapshot may take at most this part of a job's time.
 constexpr int kSnapshotShare = 10;
+// Checkpoints may take this part of a job's processor time, and take about this long: the first one is not to be too
+// large either.
+constexpr double kCheckpointShare = 0.01;
+constexpr double kCheckpointBytesPerSecond = 1e8;
+// Of the last one, which waits in memory to be written.
+constexpr std::size_t kMostLastCheckpointBytes = 256u << 20;
 
 absl::Status WhatFailed() {
   try {
@@ -32,34 +38,66 @@ absl::Status WhatFailed() {
 
 void Scheduler::PrepareNext() {
   RunPtr run;
-  std::shared_ptr<const Scene> scene;
   {
     const std::lock_guard lock(mutex_);
     const auto next = preparing_.Pop([&](const std::string& user) { return std::optional(accounts_.RankOf(user)); });
     if (!next) return;
     run = *next;
     if (run->stage == JobRun::Stage::kEnded) return;
+    if (LeavesJobs()) return Suspend(*run);
     accounts_.Serve(run->spec->owner);
+  }
+  const std::int64_t cpu_start = ThreadCpuNanoseconds();
+  absl::StatusOr<JobRun::Restored> restored = JobRun::Restored{};
+  std::optional<JobCheckpoint> checkpoint;
+  if (run->restore != nullptr) {
+    try {
+      restored = run->restore();
+    } catch (...) {
+      restored = WhatFailed();
+    }
+    if (restored.ok()) checkpoint = ReadJobCheckpoint(restored->checkpoint);
+    if (checkpoint && checkpoint->job_key != restored->spec->job_key) checkpoint.reset();
+  }
+  std::shared_ptr<const Scene> scene;
+  {
+    const std::lock_guard lock(mutex_);
+    if (run->stage == JobRun::Stage::kEnded) return;
     scene = std::move(run->scene);
+    if (restored.ok() && restored->spec != nullptr) {
+      run->spec = restored->spec;
+      scene = restored->scene;
+    }
+    run->restore = nullptr;
     run->started = run->stopwatch.Now();
+    run->saved = clock_.Now();
     run->state.start_time = std::chrono::system_clock::now();
+    if (checkpoint) {
+      run->started -=
+          std::chrono::duration_cast<Clock::Duration>(std::chrono::duration<double>(checkpoint->elapsed_seconds));
+      run->state.cpu_seconds = checkpoint->cpu_seconds;
+      const std::chrono::nanoseconds since_epoch(checkpoint->start_time);
+      run->state.start_time = WallTime(std::chrono::duration_cast<WallTime::duration>(since_epoch));
+    }
     if (run->state.phase != JobPhase::kPaused) run->state.phase = JobPhase::kRunning;
     Publish(*run);
   }
   TellListener();
-  const std::int64_t cpu_start = ThreadCpuNanoseconds();
   std::unique_ptr<Rendering> rendering;
-  absl::Status failure;
+  absl::Status failure = restored.status();
   try {
-    rendering = start_(std::move(scene), run->spec->plan);
+    if (failure.ok()) rendering = StartOrResume(*run->spec, scene, checkpoint);
   } catch (...) {
     failure = WhatFailed();
   }
+  restored = JobRun::Restored{};
+  scene.reset();
   const double cpu_seconds = static_cast<double>(ThreadCpuNanoseconds() - cpu_start) * 1e-9;
   {
     const std::lock_guard lock(mutex_);
     accounts_.Charge(run->spec->owner, cpu_seconds);
     if (run->stage == JobRun::Stage::kEnded) return;
+    if (LeavesJobs()) return Suspend(*run);
     run->state.cpu_seconds += cpu_seconds;
     run->rendering = std::move(rendering);
     if (!failure.ok()) {
@@ -72,9 +110,48 @@ void Scheduler::PrepareNext() {
   TellListener();
 }
 
+std::unique_ptr<Rendering> Scheduler::StartOrResume(const JobSpec& spec, const std::shared_ptr<const Scene>& scene,
+                                                    const std::optional<JobCheckpoint>& checkpoint) const {
+  if (checkpoint) {
+    auto rendering = start_(scene, spec.plan);
+    if (rendering->Resume(checkpoint->rendering)) return rendering;
+  }
+  return start_(scene, spec.plan);
+}
+
+void Scheduler::MaybeCheckpoint(const RunPtr& run, double cpu_seconds) {
+  if (!store_.durable() || run->saving || clock_.Now() - run->saved < options_.checkpoint_interval) return;
+  run->saved = clock_.Now();
+  const double allowed = kCheckpointShare * cpu_seconds - run->own_checkpoint_seconds - run->checkpoint_seconds;
+  if (allowed > 0) SaveCheckpoint(run, static_cast<std::size_t>(allowed * kCheckpointBytesPerSecond));
+}
+
+void Scheduler::SaveCheckpoint(const RunPtr& run, std::size_t most_bytes) {
+  const std::int64_t cpu_start = ThreadCpuNanoseconds();
+  try {
+    JobCheckpoint checkpoint;
+    checkpoint.rendering = run->rendering->Checkpoint(most_bytes);
+    if (!checkpoint.rendering.empty()) {
+      checkpoint.job_key = run->spec->job_key;
+      checkpoint.elapsed_seconds = std::chrono::duration<double>(run->stopwatch.Now() - run->started).count();
+      checkpoint.cpu_seconds = run->state.cpu_seconds;
+      const auto since_epoch = run->state.start_time->time_since_epoch();
+      checkpoint.start_time = std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count();
+      run->saving = true;
+      store_.SaveCheckpoint(run->spec->id, WriteJobCheckpoint(checkpoint), [run](double seconds) {
+        run->checkpoint_seconds += seconds;
+        run->saving = false;
+      });
+    }
+  } catch (const std::bad_alloc&) {
+    // The job goes on without one.
+  }
+  run->own_checkpoint_seconds += static_cast<double>(ThreadCpuNanoseconds() - cpu_start) * 1e-9;
+}
+
 void Scheduler::Requeue(const RunPtr& run) {
   run->stage = JobRun::Stage::kReady;
-  if (run->cancellation.cancelled()) {
+  if (run->cancellation.cancelled() || LeavesJobs()) {
     urgent_.push_back(run);
   } else if (run->state.phase != JobPhase::kPaused) {
     ready_.Push(run->Turn(), run);
@@ -102,7 +179,16 @@ void Scheduler::RunSlices() {
     }
     run->stage = JobRun::Stage::kSlicing;
     accounts_.Serve(run->spec->owner);
+    const bool leave = LeavesJobs() && !run->cancellation.cancelled();
+    const double cpu_seconds = run->state.cpu_seconds;
     lock.unlock();
+    if (leave) {
+      SaveCheckpoint(run, kMostLastCheckpointBytes);
+      lock.lock();
+      Suspend(*run);
+      continue;
+    }
+    MaybeCheckpoint(run, cpu_seconds);
     RunSlice(*run);
     lock.lock();
     if (run->stage == JobRun::Stage::kSlicing) {

@@ -72,7 +72,9 @@ v1::JobClass JobClassToProto(JobClass job_class) {
   return v1::JOB_CLASS_UNSPECIFIED;
 }
 
-// What decides a result's bits. Threads and skips do not.
+}  // namespace
+
+// Threads and skips do not.
 std::string JobKey(const JobSpec& spec, const std::string& build) {
   v1::Settings settings = SettingsToProto(spec.plan.settings);
   settings.clear_threads();
@@ -84,8 +86,6 @@ std::string JobKey(const JobSpec& spec, const std::string& build) {
   hash.Add(build);
   return hash.Finish();
 }
-
-}  // namespace
 
 v1::Job JobToProto(const JobSpec& spec, const JobState& state, JobView view) {
   v1::Job job;
@@ -124,7 +124,7 @@ absl::StatusOr<v1::RenderResult> MakeResult(const JobRecord& job, const std::str
                      spec.id.Name() + " ended before anything was rendered");
   }
   v1::RenderResult result = ResultToProto(*spec.scene, *state.field);
-  result.set_job_key(JobKey(spec, build));
+  result.set_job_key(spec.job_key);
   result.set_build(build);
   *result.mutable_settings() = SettingsToProto(spec.settings);
   *result.mutable_plan() = PlanToProto(spec.plan);

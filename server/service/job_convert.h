@@ -13,6 +13,9 @@ namespace flatlight {
 
 enum class JobView : std::uint8_t { kWhole, kChanging };
 
+// Names what decides a result's bits: world, probes, settings and build.
+std::string JobKey(const JobSpec& spec, const std::string& build);
+
 // kChanging leaves out what never changes: scene, settings, plan.
 v1::Job JobToProto(const JobSpec& spec, const JobState& state, JobView view);
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/render/plan.h"
+#include "server/convert/scene_reader.h"
 #include "server/convert/settings_convert.h"
 #include "server/service/job_convert.h"
 #include "server/service/page.h"
@@ -70,6 +71,31 @@ absl::StatusOr<std::optional<RequestKey>> KeyOf(const Caller& caller, const v1::
       {caller.name, "CreateJob", request.request_id(), Sha256Of(rest.SerializeAsString())});
 }
 
+// The job that a request asks for.
+absl::StatusOr<JobRun::Restored> MakeJob(Backend& backend, const v1::CreateJobRequest& request, JobSpec spec,
+                                         const Proceed& proceed) {
+  auto planned = MakePlannedScene(backend, request.scene(), request.settings(), proceed);
+  if (!planned.ok()) return planned.status();
+  spec.scene = std::make_shared<SceneOutline>(*planned->scene);
+  spec.settings = std::move(planned->settings);
+  spec.plan = std::move(planned->plan);
+  spec.job_key = JobKey(spec, backend.version);
+  return JobRun::Restored{std::make_shared<JobSpec>(std::move(spec)), std::move(planned->scene), {}};
+}
+
+// What RestoreJob makes the same job from, whatever becomes of uploaded scenes.
+absl::StatusOr<Submission> MakeSubmission(Backend& backend, const v1::CreateJobRequest& request) {
+  Submission submission;
+  submission.request = request.SerializeAsString();
+  if (!request.scene().has_name()) return submission;
+  const auto named = FindScene(request.scene().name(), backend.scenes);
+  if (!named.ok()) return named.status();
+  if (named->info.gallery()) return submission;
+  submission.scene_sha256 = request.scene().name().substr(std::string("scenes/").size());
+  submission.scene = named->json;
+  return submission;
+}
+
 v1::Job WholeJob(const JobRecord& job) { return JobToProto(*job.spec, *job.state, JobView::kWhole); }
 
 template <class Action>
@@ -99,19 +125,48 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
       return WholeJob(*job);
     }
   }
-  auto planned = MakePlannedScene(backend, request.scene(), request.settings(), proceed);
-  if (!planned.ok()) return planned.status();
-  auto spec = std::make_shared<JobSpec>();
-  spec->id = JobId::Random();
-  spec->owner = caller.name;
-  spec->job_class = *job_class;
-  spec->scene = std::make_shared<SceneOutline>(*planned->scene);
-  spec->settings = std::move(planned->settings);
-  spec->plan = std::move(planned->plan);
-  spec->create_time = std::chrono::system_clock::now();
-  const auto job = backend.scheduler.Submit(std::move(spec), std::move(planned->scene), *key);
+  JobSpec spec;
+  spec.id = JobId::Random();
+  spec.owner = caller.name;
+  spec.job_class = *job_class;
+  spec.create_time = std::chrono::system_clock::now();
+  auto made = MakeJob(backend, request, std::move(spec), proceed);
+  if (!made.ok()) return made.status();
+  absl::StatusOr<Submission> submission = Submission{};
+  if (backend.jobs.durable()) submission = MakeSubmission(backend, request);
+  if (!submission.ok()) return submission.status();
+  const auto job = backend.scheduler.Submit(std::move(made->spec), std::move(made->scene), *submission, *key);
   if (!job.ok()) return job.status();
   return WholeJob(*job);
+}
+
+absl::StatusOr<JobRun::Restored> RestoreJob(Backend& backend, JobArchive& archive, const JobSpec& accepted) {
+  const auto submission = archive.FetchSubmission(accepted.id);
+  if (!submission.ok()) return submission.status();
+  v1::CreateJobRequest request;
+  if (!request.ParseFromString(submission->request)) {
+    return MakeError(absl::StatusCode::kDataLoss, "STORAGE_DAMAGED",
+                     "the request that made " + accepted.id.Name() + " is damaged; create the job again");
+  }
+  if (submission->scene != nullptr) {
+    v1::Scene scene;
+    Diagnostics diagnostics;
+    ReadSceneJson(*submission->scene, scene, diagnostics);
+    if (!diagnostics.empty()) return MakeDiagnosticsError("BAD_SCENE", "the scene", diagnostics);
+    *request.mutable_scene()->mutable_scene() = std::move(scene);
+  }
+  JobSpec spec;
+  spec.id = accepted.id;
+  spec.owner = accepted.owner;
+  spec.job_class = accepted.job_class;
+  spec.create_time = accepted.create_time;
+  auto made = MakeJob(backend, request, std::move(spec), [] { return absl::OkStatus(); });
+  if (!made.ok()) return made.status();
+  // Without its checkpoint a job begins anew, and ends with the same bits.
+  if (auto checkpoint = archive.FetchCheckpoint(accepted.id); checkpoint.ok()) {
+    made->checkpoint = std::move(*checkpoint).value_or("");
+  }
+  return made;
 }
 
 absl::StatusOr<v1::Job> GetJob(Backend& backend, const v1::GetJobRequest& request) {
@@ -125,7 +180,9 @@ absl::StatusOr<v1::Job> GetJob(Backend& backend, const v1::GetJobRequest& reques
 absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJobsRequest& request) {
   const auto page = ParsePage(request.page_size(), request.page_token());
   if (!page.ok()) return page.status();
-  const JobPage jobs = backend.jobs.List(page->position, page->size);
+  const auto listed = backend.jobs.List(page->position, page->size);
+  if (!listed.ok()) return listed.status();
+  const JobPage& jobs = *listed;
   v1::ListJobsResponse response;
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < jobs.jobs.size(); ++i) {

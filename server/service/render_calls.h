@@ -6,12 +6,15 @@
 #include "flatlight/v1/render_service.pb.h"
 #include "server/service/backend.h"
 #include "server/service/scene_source.h"
+#include "server/store/job_archive.h"
 
 namespace flatlight {
 
 // The unary calls of RenderService as plain functions. Those that may take seconds end early when `proceed` says so.
 absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const v1::CreateJobRequest& request,
                                   const Proceed& proceed);
+// A job of a process before, made again from what was submitted, with its last checkpoint.
+absl::StatusOr<JobRun::Restored> RestoreJob(Backend& backend, JobArchive& archive, const JobSpec& accepted);
 absl::StatusOr<v1::Job> GetJob(Backend& backend, const v1::GetJobRequest& request);
 absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJobsRequest& request);
 absl::StatusOr<v1::Job> CancelJob(Backend& backend, const v1::CancelJobRequest& request);

@@ -16,7 +16,6 @@ namespace {
 constexpr double kDefaultRate = 20;
 constexpr double kMaxRate = 1000;
 
-constexpr auto kInlineLane = [](const auto&) { return Lane::kInline; };
 constexpr auto kQuickLane = [](const auto&) { return Lane::kQuick; };
 
 // A stream that ends before it begins. Deletes itself.
@@ -37,8 +36,10 @@ grpc::ServerUnaryReactor* RenderService::CreateJob(Context* context, const Bytes
 }
 
 grpc::ServerUnaryReactor* RenderService::GetJob(Context* context, const Bytes* request, Bytes* response) {
+  // A store on disk may take a while.
+  const auto lane = [this](const v1::GetJobRequest&) { return backend_.jobs.durable() ? Lane::kQuick : Lane::kInline; };
   return Answer<v1::GetJobRequest>(
-      backend_, context, request, response, kInlineLane,
+      backend_, context, request, response, lane,
       [this](const Caller&, const v1::GetJobRequest& r) { return flatlight::GetJob(backend_, r); });
 }
 
@@ -127,7 +128,13 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::GetResult(Context* co
   const absl::Status posted = PostTo(backend_.quick, 0, [this, id = *id, stream = stream.get()] {
     const auto job = backend_.jobs.Get(id);
     if (!job.ok()) return stream->Fail(ToGrpcStatus(job.status()));
-    auto result = results_.Get(*job, backend_.version);
+    auto result = results_.Get(id, [&]() -> ResultCache::Bytes {
+      auto written = backend_.jobs.WrittenResult(id);
+      if (!written.ok() || *written != nullptr) return written;
+      const auto made = MakeResult(*job, backend_.version);
+      if (!made.ok()) return made.status();
+      return std::make_shared<const std::string>(made->SerializeAsString());
+    });
     if (!result.ok()) return stream->Fail(ToGrpcStatus(result.status()));
     stream->Send(*std::move(result));
   });

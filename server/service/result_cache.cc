@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/result_cache.h"
 
-#include "server/service/job_convert.h"
-
 namespace flatlight {
 
-absl::StatusOr<std::shared_ptr<const std::string>> ResultCache::Get(const JobRecord& job, const std::string& build) {
+ResultCache::Bytes ResultCache::Get(const JobId& job, const std::function<Bytes()>& make) {
   {
     const std::lock_guard lock(mutex_);
     std::erase_if(results_, [](const auto& entry) { return entry.second.expired(); });
-    if (const auto found = results_.find(job.spec->id); found != results_.end()) {
+    if (const auto found = results_.find(job); found != results_.end()) {
       if (auto bytes = found->second.lock()) return bytes;
     }
   }
-  const auto result = MakeResult(job, build);
-  if (!result.ok()) return result.status();
-  auto bytes = std::make_shared<const std::string>(result->SerializeAsString());
+  auto bytes = make();
+  if (!bytes.ok()) return bytes;
   const std::lock_guard lock(mutex_);
-  results_[job.spec->id] = bytes;
+  results_[job] = *bytes;
   return bytes;
 }
 

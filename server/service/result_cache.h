@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_SERVER_SERVICE_RESULT_CACHE_H_
 #define FLATLIGHT_SERVER_SERVICE_RESULT_CACHE_H_
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -9,14 +10,16 @@
 
 #include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
-#include "server/store/job.h"
+#include "server/store/job_id.h"
 
 namespace flatlight {
 
 // Serialised results of ended jobs, shared by those who read one at the same time, and kept no longer.
 class ResultCache {
  public:
-  absl::StatusOr<std::shared_ptr<const std::string>> Get(const JobRecord& job, const std::string& build);
+  using Bytes = absl::StatusOr<std::shared_ptr<const std::string>>;
+  // `make` is called if nobody reads the result now.
+  Bytes Get(const JobId& job, const std::function<Bytes()>& make);
 
  private:
   std::mutex mutex_;

@@ -2,7 +2,9 @@
 #include "server/service/server.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
+#include <mutex>
 #include <utility>
 
 #include "core/execution/clock.h"
@@ -16,15 +18,21 @@
 #include "server/scheduler/task_queue.h"
 #include "server/service/backend.h"
 #include "server/service/build_version.h"
+#include "server/service/job_format.h"
 #include "server/service/listen_address.h"
+#include "server/service/render_calls.h"
 #include "server/service/render_service.h"
 #include "server/service/scene_cache.h"
 #include "server/service/scene_service.h"
 #include "server/service/watch_hub.h"
+#include "server/store/durable_job_store.h"
+#include "server/store/durable_scene_store.h"
 #include "server/store/error.h"
+#include "server/store/job_archive.h"
 #include "server/store/memory_job_store.h"
 #include "server/store/memory_scene_store.h"
 #include "server/store/random_bytes.h"
+#include "server/store/storage.h"
 
 namespace flatlight {
 namespace {
@@ -34,6 +42,8 @@ constexpr std::size_t kMaxWaitingSlowBytes = 256u << 20;
 constexpr std::size_t kMaxBuiltSceneBytes = 1u << 30;
 constexpr std::size_t kMaxIndexedElements = 2'000'000;  // Of IndexCache::kElementBytes each, with their scene.
 constexpr std::chrono::milliseconds kFlush{100};
+constexpr double kMaxCachedResultBytes = 256e6;  // Of those that are on disk too.
+constexpr char kStorageHealth[] = "flatlight.storage";
 constexpr int kQuickThreads = 4;
 constexpr int kSlowThreads = 2;
 
@@ -51,6 +61,7 @@ SchedulerOptions MakeSchedulerOptions(const ServerOptions& options) {
   scheduler.starters = 2;
   scheduler.max_running_jobs = options.limits.max_running_jobs;
   scheduler.max_jobs_per_user = options.limits.max_jobs_per_user;
+  scheduler.checkpoint_interval = options.checkpoint_interval;
   return scheduler;
 }
 
@@ -58,10 +69,15 @@ SchedulerOptions MakeSchedulerOptions(const ServerOptions& options) {
 
 // In the order in which they need each other; destroyed in reverse.
 struct Server::Parts {
-  explicit Parts(const ServerOptions& options)
+  Parts(const ServerOptions& options, std::unique_ptr<Storage> opened)
       : pool(options.threads),
-        jobs({.max_jobs = options.limits.max_jobs}, clock),
-        scenes({.max_scene_bytes = options.limits.max_scene_bytes}, clock),
+        storage(std::move(opened)),
+        archive(storage == nullptr ? nullptr : std::make_unique<JobArchive>(*storage, BuildVersion())),
+        format(BuildVersion()),
+        job_store(MakeJobStore(options)),
+        jobs(*job_store),
+        scene_store(MakeSceneStore(options)),
+        scenes(*scene_store),
         hub({.epoch = RandomEpoch(), .max_watches = options.limits.max_watches, .heartbeat = options.heartbeat}, jobs),
         scheduler(MakeSchedulerOptions(options), jobs, pool, clock, StartOf(options),
                   [this](const JobId& job) { hub.JobChanged(job); }),
@@ -81,6 +97,48 @@ struct Server::Parts {
         scene_service(backend),
         server_service(backend) {}
 
+  std::unique_ptr<JobStore> MakeJobStore(const ServerOptions& options) {
+    const std::size_t most = options.limits.max_jobs;
+    if (archive == nullptr) {
+      return std::make_unique<MemoryJobStore>(MemoryJobStore::Limits{.max_jobs = most}, clock);
+    }
+    DurableJobStore::Options durable_options;
+    durable_options.memory.max_jobs = most;
+    durable_options.memory.max_ended_bytes = kMaxCachedResultBytes;
+    auto store = std::make_unique<DurableJobStore>(
+        durable_options, clock, *archive, format, [this](const JobId& job) { hub.JobChanged(job); },
+        [this](const absl::Status& health) { TellStorageHealth(health); });
+    durable = store.get();
+    return store;
+  }
+
+  std::unique_ptr<SceneStore> MakeSceneStore(const ServerOptions& options) {
+    const MemorySceneStore::Limits most{.max_scene_bytes = options.limits.max_scene_bytes};
+    if (storage == nullptr) return std::make_unique<MemorySceneStore>(most, clock);
+    auto store = std::make_unique<DurableSceneStore>(most, clock, *storage);
+    durable_scenes = store.get();
+    return store;
+  }
+
+  // Goes on with the scenes and jobs of the process before.
+  absl::Status Restore() {
+    if (durable == nullptr) return absl::OkStatus();
+    if (absl::Status read = durable_scenes->Restore(); !read.ok()) return read;
+    const auto restored = durable->Restore();
+    if (!restored.ok()) return restored.status();
+    for (const JobRecord& job : *restored) {
+      scheduler.Resubmit(job, [this, spec = job.spec] { return RestoreJob(backend, *archive, *spec); });
+    }
+    return absl::OkStatus();
+  }
+
+  void TellStorageHealth(const absl::Status& health) {
+    if (!health.ok()) std::fprintf(stderr, "flatlightd: %s\n", std::string(health.message()).c_str());
+    const std::lock_guard lock(health_mutex);
+    storage_healthy = health.ok();
+    if (grpc != nullptr) grpc->GetHealthCheckService()->SetServingStatus(kStorageHealth, storage_healthy);
+  }
+
   Scheduler::Start StartOf(const ServerOptions& options) {
     if (options.start_rendering) return options.start_rendering;
     return [this](std::shared_ptr<const Scene> scene, const Plan& plan) {
@@ -91,8 +149,15 @@ struct Server::Parts {
   SteadyClock clock;
   IndexCache indexes{kMaxIndexedElements};
   ThreadPool pool;
-  MemoryJobStore jobs;
-  MemorySceneStore scenes;
+  std::unique_ptr<Storage> storage;  // Null, as are the archive and `durable`: nothing outlives the process.
+  std::unique_ptr<JobArchive> archive;
+  ProtoJobFormat format;
+  DurableJobStore* durable = nullptr;
+  std::unique_ptr<JobStore> job_store;
+  JobStore& jobs;
+  DurableSceneStore* durable_scenes = nullptr;
+  std::unique_ptr<SceneStore> scene_store;
+  SceneStore& scenes;
   SceneCache built_scenes{kMaxBuiltSceneBytes};
   WatchHub hub;
   Scheduler scheduler;
@@ -102,6 +167,8 @@ struct Server::Parts {
   RenderService render_service;
   SceneService scene_service;
   ServerService server_service;
+  std::mutex health_mutex;  // Held while `grpc` changes.
+  bool storage_healthy = true;
   std::unique_ptr<grpc::Server> grpc;
   std::string address;
 };
@@ -121,7 +188,14 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   };
   if (!address->path.empty() && IsListening(address->path)) return cannot_listen("another program listens there");
 
-  auto parts = std::make_unique<Parts>(options);
+  std::unique_ptr<Storage> storage;
+  if (!options.data.empty()) {
+    auto opened = Storage::Open(options.data);
+    if (!opened.ok()) return opened.status();
+    storage = *std::move(opened);
+  }
+  auto parts = std::make_unique<Parts>(options, std::move(storage));
+  if (absl::Status restored = parts->Restore(); !restored.ok()) return restored;
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
@@ -135,7 +209,13 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   builder.RegisterService(&parts->render_service);
   builder.RegisterService(&parts->scene_service);
   builder.RegisterService(&parts->server_service);
-  parts->grpc = builder.BuildAndStart();
+  {
+    const std::lock_guard lock(parts->health_mutex);
+    parts->grpc = builder.BuildAndStart();
+    if (parts->grpc != nullptr && parts->durable != nullptr) {
+      parts->grpc->GetHealthCheckService()->SetServingStatus(kStorageHealth, parts->storage_healthy);
+    }
+  }
   if (parts->grpc == nullptr) {
     const std::string why = WhyNotListening(*address);
     return cannot_listen(why.empty() ? "another program listened there until just now" : why);
@@ -155,10 +235,12 @@ void Server::Drain(std::chrono::milliseconds grace) {
   parts.grpc->GetHealthCheckService()->Shutdown();
   parts.hub.Drain(grace);
   parts.scheduler.Stop();
+  if (parts.durable != nullptr) parts.durable->Close();
   parts.backend.calls.AwaitNone(grace);
   // Answers are on their way; what remains is to write them, and idle connections.
   parts.grpc->Shutdown(std::chrono::system_clock::now() + std::min(grace, kFlush));
   parts.grpc->Wait();
+  const std::lock_guard lock(parts.health_mutex);
   parts.grpc.reset();
 }
 

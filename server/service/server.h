@@ -17,23 +17,25 @@ struct ServerOptions {
   std::string address = "127.0.0.1:0";  // A loopback address and port (0: any free one), or unix:PATH.
   std::string token;                    // What callers must present; empty: nothing.
   int threads = 1;                      // For rendering.
+  std::string data;                     // A folder for what is to outlive the process; empty: nothing does.
   Limits limits;
-  std::chrono::milliseconds heartbeat{10'000};  // Between messages of a watch on which nothing happens.
+  std::chrono::milliseconds checkpoint_interval{3000};  // Of a job, at least. With `data`.
+  std::chrono::milliseconds heartbeat{10'000};          // Between messages of a watch on which nothing happens.
   Scheduler::Start start_rendering;  // Tests give their own; else StartRendering, on indexes that jobs share.
 };
 
 class Server {
  public:
   // Serves from now on. INVALID_ARGUMENT for an address that is not allowed, UNAVAILABLE, with the reason, where it
-  // cannot listen.
+  // cannot listen or use the folder.
   static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
   // As Drain without grace.
   ~Server();
 
   // Where it can be reached: the address with the port it has.
   const std::string& address() const;
-  // Ends: health says NOT_SERVING, new jobs are refused, watchers are told, jobs are cancelled; calls under way get
-  // `grace` to end. Returns when all has ended.
+  // Ends: health says NOT_SERVING, new jobs are refused, watchers are told; jobs are written down as far as they are,
+  // or, without a folder, cancelled; calls under way get `grace` to end. Returns when all has ended.
   void Drain(std::chrono::milliseconds grace);
 
  private:

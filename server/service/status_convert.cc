@@ -112,6 +112,15 @@ google::rpc::Status ToRpcStatus(const absl::Status& status) {
   return result;
 }
 
+absl::Status FromRpcStatus(const google::rpc::Status& status) {
+  std::string reason;
+  for (const auto& detail : status.details()) {
+    google::rpc::ErrorInfo info;
+    if (detail.UnpackTo(&info)) reason = info.reason();
+  }
+  return MakeError(static_cast<absl::StatusCode>(status.code()), reason, status.message());
+}
+
 grpc::Status ToGrpcStatus(const absl::Status& status) {
   if (status.ok()) return grpc::Status::OK;
   const google::rpc::Status rpc = ToRpcStatus(status);

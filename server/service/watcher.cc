@@ -37,10 +37,11 @@ Watcher::Decision Watcher::Decide(Time now) {
   }
   if (update_ != nullptr) return DecideWrite(Write::kUpdate, update_->Message(next_message_), now);
 
-  const auto job = hub_.jobs().Get(job_);
+  const auto job = hub_.jobs().GetWhole(job_);
   if (!job.ok()) return DecideFinish(ToGrpcStatus(job.status()));
   const bool ended = HasEnded(job->state->phase);
-  if (!known_ || job->state->sequence > *known_) {
+  const bool restored = job->state->sequence > 0;  // Until then there is nothing to tell.
+  if (restored && (!known_ || job->state->sequence > *known_)) {
     if (ended || now >= next_update_) {
       update_ = hub_.UpdateFor(*job, known_);
       next_message_ = 0;

@@ -30,6 +30,7 @@ struct JobSpec {
   std::shared_ptr<const SceneOutline> scene;  // Of the scene itself, only a job that has not ended has a share.
   Settings settings;                          // As requested.
   Plan plan;
+  std::string job_key;  // Names what decides the bits of the result. Not known of a job that waits to be restored.
   WallTime create_time;
 };
 

@@ -2,8 +2,10 @@
 #ifndef FLATLIGHT_SERVER_STORE_JOB_STORE_H_
 #define FLATLIGHT_SERVER_STORE_JOB_STORE_H_
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +25,16 @@ struct RequestKey {
   std::string fingerprint;  // Of everything else in the request: the same id with another one is an error.
 };
 
+// How long it does.
+inline constexpr std::chrono::hours kRequestMemory{24};
+
+// What a job was made from, for a store that outlives the process: bytes that only their writer understands.
+struct Submission {
+  std::string request;
+  std::string scene_sha256;                  // Of the uploaded file that the request names.
+  std::shared_ptr<const std::string> scene;  // Its bytes; null: it names none.
+};
+
 struct JobPage {
   std::vector<JobRecord> jobs;               // Newest first.
   std::vector<std::uint64_t> positions;      // Of each: `before` for a page that begins after it.
@@ -39,14 +51,31 @@ class JobStore {
   virtual absl::StatusOr<std::optional<JobId>> FindRequest(const RequestKey& key) = 0;
   // Adds a job, unless `key` has made one meanwhile, which is then returned. Drops ended jobs, oldest first, to make
   // room; RESOURCE_EXHAUSTED if that is not enough.
-  virtual absl::StatusOr<JobRecord> Insert(JobRecord job, const std::optional<RequestKey>& key) = 0;
-  // NOT_FOUND if the job was deleted.
-  virtual absl::Status Update(const JobId& id, std::shared_ptr<const JobState> state) = 0;
+  virtual absl::StatusOr<JobRecord> Insert(JobRecord job, const Submission& submission,
+                                           const std::optional<RequestKey>& key) = 0;
+  // A newer state of a job. NOT_FOUND if it was deleted.
+  virtual absl::Status Update(const JobRecord& job) = 0;
+  // The field of a job that has ended may be left out.
   virtual absl::StatusOr<JobRecord> Get(const JobId& id) = 0;
-  // At most `limit` jobs, from the newest one, or from the newest one older than `before`.
-  virtual JobPage List(std::optional<std::uint64_t> before, std::size_t limit) = 0;
+  virtual absl::StatusOr<JobRecord> GetWhole(const JobId& id) { return Get(id); }
+  // At most `limit` jobs, from the newest one, or from the newest one older than `before`. Fields may be left out.
+  virtual absl::StatusOr<JobPage> List(std::optional<std::uint64_t> before, std::size_t limit) = 0;
   virtual absl::Status Delete(const JobId& id) = 0;
+
+  // Of a store that outlives the process. An ended state is shown once it is written, or cannot be written for now.
+  virtual bool durable() const { return false; }
+  // Get, after an ended state that came by Update is shown.
+  virtual absl::StatusOr<JobRecord> AwaitEnd(const JobId& id) { return Get(id); }
+  // The result as it was written; null if it has not been.
+  virtual absl::StatusOr<std::shared_ptr<const std::string>> WrittenResult(const JobId& /*id*/) { return nullptr; }
+  // Writes a checkpoint soon, on another thread, and tells how long it worked on it. s.
+  virtual void SaveCheckpoint(const JobId& /*id*/, std::string /*checkpoint*/, std::function<void(double)> /*saved*/) {}
 };
+
+// NOT_FOUND.
+absl::Status NoSuchJob(const JobId& id);
+// ALREADY_EXISTS: the request of this id, with other contents, made `job`.
+absl::Status RequestIdReused(const RequestKey& key, const JobId& job);
 
 }  // namespace flatlight
 

@@ -8,8 +8,6 @@
 namespace flatlight {
 namespace {
 
-constexpr std::chrono::hours kRequestMemory{24};
-
 // The probes' points and a field with every array; of a pixel, value and error.
 double EstimateFieldBytes(const SceneTraits& traits, int channels) {
   return static_cast<double>(traits.probe_points) * (100.0 + 8 * (6 * channels + 1)) +
@@ -32,10 +30,6 @@ double EstimateBytes(const JobSpec& spec) {
          static_cast<double>(traits.pixels) * kPixelBytes * spec.scene->channels;
 }
 
-absl::Status NoSuchJob(const JobId& id) {
-  return MakeError(absl::StatusCode::kNotFound, "JOB_NOT_FOUND", id.Name() + " does not exist or was deleted");
-}
-
 }  // namespace
 
 absl::StatusOr<std::optional<JobId>> MemoryJobStore::FindRequest(const RequestKey& key) {
@@ -52,14 +46,13 @@ absl::StatusOr<std::optional<JobId>> MemoryJobStore::FindRequestLocked(const Req
   const auto found = requests_.find({key.caller, key.method, key.request_id});
   if (found == requests_.end()) return std::optional<JobId>();
   if (found->second.fingerprint != key.fingerprint) {
-    return MakeError(absl::StatusCode::kAlreadyExists, "REQUEST_ID_REUSED",
-                     "request_id " + key.request_id + " was used for " + found->second.job.Name() +
-                         " with other contents; use a new one for a new job");
+    return RequestIdReused(key, found->second.job);
   }
   return std::optional<JobId>(found->second.job);
 }
 
-absl::StatusOr<JobRecord> MemoryJobStore::Insert(JobRecord job, const std::optional<RequestKey>& key) {
+absl::StatusOr<JobRecord> MemoryJobStore::Insert(JobRecord job, const Submission&,
+                                                 const std::optional<RequestKey>& key) {
   const std::lock_guard lock(mutex_);
   if (key) {
     const auto earlier = FindRequestLocked(*key);
@@ -70,7 +63,8 @@ absl::StatusOr<JobRecord> MemoryJobStore::Insert(JobRecord job, const std::optio
       return jobs_.at(number->second).job;
     }
   }
-  const double bytes = EstimateBytes(*job.spec);
+  if (const auto number = numbers_.find(job.spec->id); number != numbers_.end()) return jobs_.at(number->second).job;
+  const double bytes = HasEnded(job.state->phase) ? EstimateEndedBytes(*job.spec) : EstimateBytes(*job.spec);
   if (absl::Status room = MakeRoom(bytes); !room.ok()) return room;
   bytes_ += bytes;
   const std::uint64_t number = next_number_++;
@@ -141,13 +135,18 @@ void MemoryJobStore::Erase(std::uint64_t number) {
   jobs_.erase(job);
 }
 
-absl::Status MemoryJobStore::Update(const JobId& id, std::shared_ptr<const JobState> state) {
+absl::Status MemoryJobStore::Update(const JobRecord& job) {
+  JobRecord before;  // Released without the lock: that may free a large field.
   const std::lock_guard lock(mutex_);
-  const auto number = numbers_.find(id);
-  if (number == numbers_.end()) return NoSuchJob(id);
-  // The old state is released after the swap, which may free a large field.
+  const auto number = numbers_.find(job.spec->id);
+  if (number == numbers_.end()) return NoSuchJob(job.spec->id);
   Entry& entry = jobs_.at(number->second);
-  entry.job.state.swap(state);
+  before = std::exchange(entry.job, job);
+  if (entry.end == 0 && before.spec != job.spec) {
+    bytes_ -= entry.bytes;
+    entry.bytes = EstimateBytes(*job.spec);
+    bytes_ += entry.bytes;
+  }
   if (entry.end == 0 && HasEnded(entry.job.state->phase)) NoteEnd(number->second, entry);
   return absl::OkStatus();
 }
@@ -159,7 +158,7 @@ absl::StatusOr<JobRecord> MemoryJobStore::Get(const JobId& id) {
   return jobs_.at(number->second).job;
 }
 
-JobPage MemoryJobStore::List(std::optional<std::uint64_t> before, std::size_t limit) {
+absl::StatusOr<JobPage> MemoryJobStore::List(std::optional<std::uint64_t> before, std::size_t limit) {
   const std::lock_guard lock(mutex_);
   JobPage page;
   auto job = before ? jobs_.lower_bound(*before) : jobs_.end();

@@ -27,10 +27,11 @@ class MemoryJobStore final : public JobStore {
   MemoryJobStore(const Limits& limits, const Clock& clock) : limits_(limits), clock_(clock) {}
 
   absl::StatusOr<std::optional<JobId>> FindRequest(const RequestKey& key) override;
-  absl::StatusOr<JobRecord> Insert(JobRecord job, const std::optional<RequestKey>& key) override;
-  absl::Status Update(const JobId& id, std::shared_ptr<const JobState> state) override;
+  absl::StatusOr<JobRecord> Insert(JobRecord job, const Submission& submission,
+                                   const std::optional<RequestKey>& key) override;
+  absl::Status Update(const JobRecord& job) override;
   absl::StatusOr<JobRecord> Get(const JobId& id) override;
-  JobPage List(std::optional<std::uint64_t> before, std::size_t limit) override;
+  absl::StatusOr<JobPage> List(std::optional<std::uint64_t> before, std::size_t limit) override;
   absl::Status Delete(const JobId& id) override;
 
  private:

@@ -11,6 +11,7 @@ namespace flatlight {
 
 // What results and watchers need to know of a scene. Jobs keep this when they have ended, not the scene.
 struct SceneOutline {
+  SceneOutline() = default;
   explicit SceneOutline(const Scene& scene)
       : name(scene.name()),
         channels(scene.channels()),
@@ -23,7 +24,7 @@ struct SceneOutline {
   Point2 ToWorld(Point2 p) const { return {frame.origin.x + frame.scale * p.x, frame.origin.y + frame.scale * p.y}; }
 
   std::string name;
-  int channels;
+  int channels = 1;
   Frame frame;
   std::vector<Probe> probes;
   SceneTraits traits;

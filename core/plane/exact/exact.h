@@ -35,6 +35,13 @@ struct ExactValue {
   Spectrum gradient_error;
   Spectrum hessian_error;
   Spectrum rotation_error;
+
+  // For a stream of states (see core/render/state_stream.h).
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.irradiance, self.gradient, self.hessian, self.rotation, self.irradiance_error, self.gradient_error,
+           self.hessian_error, self.rotation_error);
+  }
 };
 
 struct ExactOptions {

@@ -25,6 +25,12 @@ class FluenceImage {
   // Pixel after pixel, row 0 the lowest, then channel. Normalised radiance times radians.
   const std::vector<float>& sums() const { return sums_; }
 
+  // For a stream of states (see core/render/state_stream.h): the sums.
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream.Filled(self.sums_);
+  }
+
  private:
   template <int kChannels>
   void AddInside(Point2 from, Vector2 along, double begin, double end, const Spectrum& per_t);

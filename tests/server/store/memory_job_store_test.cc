@@ -36,31 +36,31 @@ class MemoryJobStoreTest : public ::testing::Test {
 
 TEST_F(MemoryJobStoreTest, KeepsTheNewestState) {
   const JobRecord job = NewJob();
-  ASSERT_THAT(store_.Insert(job, std::nullopt), IsOk());
+  ASSERT_THAT(store_.Insert(job, {}, std::nullopt), IsOk());
   auto state = std::make_shared<JobState>();
   state->sequence = 7;
-  ASSERT_THAT(store_.Update(job.spec->id, state), IsOk());
+  ASSERT_THAT(store_.Update({job.spec, state}), IsOk());
   EXPECT_EQ(store_.Get(job.spec->id)->state->sequence, 7u);
 }
 
 TEST_F(MemoryJobStoreTest, ForgetsWhatIsDeleted) {
   const JobRecord job = NewJob();
-  ASSERT_THAT(store_.Insert(job, std::nullopt), IsOk());
+  ASSERT_THAT(store_.Insert(job, {}, std::nullopt), IsOk());
   ASSERT_THAT(store_.Delete(job.spec->id), IsOk());
   EXPECT_THAT(store_.Get(job.spec->id), StatusIs(absl::StatusCode::kNotFound, HasSubstr(job.spec->id.Name())));
-  EXPECT_THAT(store_.Update(job.spec->id, job.state), StatusIs(absl::StatusCode::kNotFound, _));
+  EXPECT_THAT(store_.Update({job.spec, job.state}), StatusIs(absl::StatusCode::kNotFound, _));
   EXPECT_THAT(store_.Delete(job.spec->id), StatusIs(absl::StatusCode::kNotFound, _));
 }
 
 TEST_F(MemoryJobStoreTest, ListsInPagesNewestFirst) {
   const JobRecord jobs[] = {NewJob(), NewJob(), NewJob()};
-  for (const JobRecord& job : jobs) ASSERT_THAT(store_.Insert(job, std::nullopt), IsOk());
-  const JobPage first = store_.List(std::nullopt, 2);
+  for (const JobRecord& job : jobs) ASSERT_THAT(store_.Insert(job, {}, std::nullopt), IsOk());
+  const JobPage first = *store_.List(std::nullopt, 2);
   ASSERT_EQ(first.jobs.size(), 2u);
   EXPECT_EQ(first.jobs[0].spec->id, jobs[2].spec->id);
   EXPECT_EQ(first.jobs[1].spec->id, jobs[1].spec->id);
   ASSERT_TRUE(first.next_before);
-  const JobPage second = store_.List(first.next_before, 2);
+  const JobPage second = *store_.List(first.next_before, 2);
   ASSERT_EQ(second.jobs.size(), 1u);
   EXPECT_EQ(second.jobs[0].spec->id, jobs[0].spec->id);
   EXPECT_FALSE(second.next_before);
@@ -70,16 +70,17 @@ TEST_F(MemoryJobStoreTest, DropsTheOldestEndedJobToMakeRoom) {
   const JobRecord running = NewJob();
   const JobRecord old_ended = NewJob(JobPhase::kSucceeded);
   const JobRecord new_ended = NewJob(JobPhase::kFailed);
-  for (const JobRecord& job : {running, old_ended, new_ended}) ASSERT_THAT(store_.Insert(job, std::nullopt), IsOk());
-  ASSERT_THAT(store_.Insert(NewJob(), std::nullopt), IsOk());
+  for (const JobRecord& job : {running, old_ended, new_ended})
+    ASSERT_THAT(store_.Insert(job, {}, std::nullopt), IsOk());
+  ASSERT_THAT(store_.Insert(NewJob(), {}, std::nullopt), IsOk());
   EXPECT_THAT(store_.Get(running.spec->id), IsOk());
   EXPECT_THAT(store_.Get(new_ended.spec->id), IsOk());
   EXPECT_THAT(store_.Get(old_ended.spec->id), StatusIs(absl::StatusCode::kNotFound, _));
 }
 
 TEST_F(MemoryJobStoreTest, RefusesWhenNoJobHasEnded) {
-  for (int i = 0; i < 3; ++i) ASSERT_THAT(store_.Insert(NewJob(), std::nullopt), IsOk());
-  const absl::Status refused = store_.Insert(NewJob(), std::nullopt).status();
+  for (int i = 0; i < 3; ++i) ASSERT_THAT(store_.Insert(NewJob(), {}, std::nullopt), IsOk());
+  const absl::Status refused = store_.Insert(NewJob(), {}, std::nullopt).status();
   EXPECT_THAT(refused, StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("3")));
   ASSERT_TRUE(QuotaViolationOf(refused));
   EXPECT_EQ(QuotaViolationOf(refused)->subject, "max_jobs");
@@ -89,12 +90,12 @@ TEST_F(MemoryJobStoreTest, RefusesWhenNoJobHasEnded) {
 TEST_F(MemoryJobStoreTest, RefusesWhatNeedsTooMuchMemory) {
   MemoryJobStore small({.max_bytes = 20'000}, clock_);
   const JobRecord ended = NewJob(JobPhase::kSucceeded);
-  ASSERT_THAT(small.Insert(ended, std::nullopt), IsOk());
+  ASSERT_THAT(small.Insert(ended, {}, std::nullopt), IsOk());
   JobRecord big = NewJob();
   auto spec = std::make_shared<JobSpec>(*big.spec);
   spec->scene = std::make_shared<SceneOutline>(*testing::FloorAndLamp({1000}));
   big.spec = spec;
-  EXPECT_THAT(small.Insert(big, std::nullopt), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("20000")));
+  EXPECT_THAT(small.Insert(big, {}, std::nullopt), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("20000")));
   EXPECT_THAT(small.Get(ended.spec->id), IsOk()) << "nothing is dropped for a job that cannot fit";
 }
 
@@ -102,8 +103,8 @@ TEST_F(MemoryJobStoreTest, RefusesWhatNeedsTooMuchMemory) {
 TEST_F(MemoryJobStoreTest, DropsTheResultsThatEndedFirstWhenTheyBecomeTooMany) {
   MemoryJobStore small({.max_ended_bytes = 10'000}, clock_);
   const JobRecord jobs[] = {NewJob(), NewJob(), NewJob(), NewJob()};
-  const auto end = [&](int i) { return small.Update(jobs[i].spec->id, NewJob(JobPhase::kSucceeded).state); };
-  for (const JobRecord& job : jobs) ASSERT_THAT(small.Insert(job, std::nullopt), IsOk());
+  const auto end = [&](int i) { return small.Update({jobs[i].spec, NewJob(JobPhase::kSucceeded).state}); };
+  for (const JobRecord& job : jobs) ASSERT_THAT(small.Insert(job, {}, std::nullopt), IsOk());
   ASSERT_THAT(end(2), IsOk());
   ASSERT_THAT(end(1), IsOk());
   for (const JobRecord& job : jobs) ASSERT_THAT(small.Get(job.spec->id), IsOk());
@@ -115,7 +116,7 @@ TEST_F(MemoryJobStoreTest, DropsTheResultsThatEndedFirstWhenTheyBecomeTooMany) {
 TEST_F(MemoryJobStoreTest, TheNewestResultStaysHoweverLarge) {
   MemoryJobStore small({.max_ended_bytes = 10}, clock_);
   const JobRecord job = NewJob(JobPhase::kSucceeded);
-  ASSERT_THAT(small.Insert(job, std::nullopt), IsOk());
+  ASSERT_THAT(small.Insert(job, {}, std::nullopt), IsOk());
   EXPECT_THAT(small.Get(job.spec->id), IsOk());
 }
 
@@ -124,10 +125,10 @@ TEST_F(MemoryJobStoreTest, AnEndedJobMakesRoomForAnother) {
   MemoryJobStore small({.max_bytes = 12'000}, clock_);
   const JobRecord first = NewJob();
   const JobRecord second = NewJob();
-  ASSERT_THAT(small.Insert(first, std::nullopt), IsOk());
-  EXPECT_THAT(small.Insert(second, std::nullopt), StatusIs(absl::StatusCode::kResourceExhausted, _));
-  ASSERT_THAT(small.Update(first.spec->id, NewJob(JobPhase::kSucceeded).state), IsOk());
-  ASSERT_THAT(small.Insert(second, std::nullopt), IsOk());
+  ASSERT_THAT(small.Insert(first, {}, std::nullopt), IsOk());
+  EXPECT_THAT(small.Insert(second, {}, std::nullopt), StatusIs(absl::StatusCode::kResourceExhausted, _));
+  ASSERT_THAT(small.Update({first.spec, NewJob(JobPhase::kSucceeded).state}), IsOk());
+  ASSERT_THAT(small.Insert(second, {}, std::nullopt), IsOk());
   EXPECT_THAT(small.Get(first.spec->id), IsOk());
 }
 
@@ -135,38 +136,38 @@ TEST_F(MemoryJobStoreTest, TheSameRequestFindsItsJob) {
   EXPECT_THAT(*store_.FindRequest(key_), Eq(std::nullopt));
   const JobRecord first = NewJob();
   const JobRecord second = NewJob();
-  EXPECT_EQ(store_.Insert(first, key_)->spec->id, first.spec->id);
-  EXPECT_EQ(store_.Insert(second, key_)->spec->id, first.spec->id);
+  EXPECT_EQ(store_.Insert(first, {}, key_)->spec->id, first.spec->id);
+  EXPECT_EQ(store_.Insert(second, {}, key_)->spec->id, first.spec->id);
   EXPECT_EQ(store_.FindRequest(key_)->value(), first.spec->id);
   EXPECT_THAT(store_.Get(second.spec->id), StatusIs(absl::StatusCode::kNotFound, _));
 }
 
 TEST_F(MemoryJobStoreTest, AnotherCallerMayUseTheSameRequestId) {
   const JobRecord second = NewJob();
-  ASSERT_THAT(store_.Insert(NewJob(), key_), IsOk());
+  ASSERT_THAT(store_.Insert(NewJob(), {}, key_), IsOk());
   RequestKey other = key_;
   other.caller = "you";
-  EXPECT_EQ(store_.Insert(second, other)->spec->id, second.spec->id);
+  EXPECT_EQ(store_.Insert(second, {}, other)->spec->id, second.spec->id);
 }
 
 TEST_F(MemoryJobStoreTest, TheSameRequestIdWithAnotherBodyIsAnError) {
-  ASSERT_THAT(store_.Insert(NewJob(), key_), IsOk());
+  ASSERT_THAT(store_.Insert(NewJob(), {}, key_), IsOk());
   RequestKey other = key_;
   other.fingerprint = "another body";
-  const absl::Status refused = store_.Insert(NewJob(), other).status();
+  const absl::Status refused = store_.Insert(NewJob(), {}, other).status();
   EXPECT_THAT(refused, StatusIs(absl::StatusCode::kAlreadyExists, HasSubstr("request_id id")));
   EXPECT_EQ(ReasonOf(refused), "REQUEST_ID_REUSED");
 }
 
 TEST_F(MemoryJobStoreTest, ARequestOfADeletedJobMakesNoSecondOne) {
   const JobRecord job = NewJob();
-  ASSERT_THAT(store_.Insert(job, key_), IsOk());
+  ASSERT_THAT(store_.Insert(job, {}, key_), IsOk());
   ASSERT_THAT(store_.Delete(job.spec->id), IsOk());
-  EXPECT_THAT(store_.Insert(NewJob(), key_), StatusIs(absl::StatusCode::kNotFound, _));
+  EXPECT_THAT(store_.Insert(NewJob(), {}, key_), StatusIs(absl::StatusCode::kNotFound, _));
 }
 
 TEST_F(MemoryJobStoreTest, RequestsAreRememberedForADay) {
-  ASSERT_THAT(store_.Insert(NewJob(), key_), IsOk());
+  ASSERT_THAT(store_.Insert(NewJob(), {}, key_), IsOk());
   clock_.Advance(std::chrono::hours(24));
   EXPECT_NE(*store_.FindRequest(key_), std::nullopt);
   clock_.Advance(std::chrono::seconds(1));

@@ -55,7 +55,7 @@ class SchedulerFixture : public ::testing::Test {
     spec->job_class = job_class;
     spec->id = JobId::Random();
     spec->scene = std::make_shared<SceneOutline>(*scene);
-    return scheduler_->Submit(spec, std::move(scene), key);
+    return scheduler_->Submit(spec, std::move(scene), {}, key);
   }
 
   JobId Submit(const std::string& name, const std::string& owner = "", JobClass job_class = JobClass::kInteractive) {

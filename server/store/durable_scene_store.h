@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_STORE_DURABLE_SCENE_STORE_H_
+#define FLATLIGHT_SERVER_STORE_DURABLE_SCENE_STORE_H_
+
+#include <string>
+
+#include "server/store/memory_scene_store.h"
+#include "server/store/storage.h"
+
+namespace flatlight {
+
+// Scenes that outlive the process: held in memory, and written when they are complete. Unfinished uploads begin anew.
+class DurableSceneStore final : public SceneStore {
+ public:
+  DurableSceneStore(const MemorySceneStore::Limits& limits, const Clock& clock, Storage& storage)
+      : memory_(limits, clock), storage_(storage) {}
+
+  // Reads the scenes of the process before. To be called once, first.
+  absl::Status Restore();
+
+  absl::StatusOr<std::uint64_t> Upload(const std::string& sha256, std::uint64_t total_bytes, std::uint64_t offset,
+                                       std::string_view data) override;
+  absl::StatusOr<StoredScene> Get(const std::string& sha256) override { return memory_.Get(sha256); }
+  void SetTitle(const std::string& sha256, const std::string& title) override;
+  ScenePage List(std::optional<std::uint64_t> before, std::size_t limit) override {
+    return memory_.List(before, limit);
+  }
+  absl::Status Delete(const std::string& sha256) override;
+
+ private:
+  absl::Status Keep(const StoredScene& scene);
+
+  MemorySceneStore memory_;
+  Storage& storage_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_STORE_DURABLE_SCENE_STORE_H_

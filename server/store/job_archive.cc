@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/job_archive.h"
+
+#include <utility>
+
+#include "server/store/error.h"
+
+namespace flatlight {
+namespace {
+
+using Writing = Storage::Writing;
+
+constexpr char kColumns[] = "SELECT uuid, owner, message, sequence, result, number FROM jobs ";
+
+std::int64_t SecondsOf(WallTime time) {
+  return std::chrono::duration_cast<std::chrono::seconds>(time.time_since_epoch()).count();
+}
+
+ArchivedJob JobOf(const Statement& row) {
+  ArchivedJob job;
+  job.id = *JobId::FromName("jobs/" + row.Bytes(0));
+  job.owner = row.Bytes(1);
+  job.message = row.Bytes(2);
+  job.sequence = static_cast<std::uint64_t>(row.Integer(3));
+  job.result = row.OptionalBytes(4);
+  return job;
+}
+
+// What a job holds of blobs, given back.
+absl::Status ReleaseBlobs(Writing& writing, const std::string& condition, std::int64_t parameter) {
+  Statement blobs = writing.Prepare("SELECT request, scene, result, checkpoint FROM jobs WHERE " + condition);
+  blobs.Bind(parameter);
+  while (true) {
+    const auto row = blobs.Step();
+    if (!row.ok()) return row.status();
+    if (!*row) return absl::OkStatus();
+    for (int column = 0; column < 4; ++column) {
+      if (absl::Status less = writing.Release(blobs.OptionalBytes(column)); !less.ok()) return less;
+    }
+  }
+}
+
+absl::Status RemoveJobs(Writing& writing, const std::string& condition, std::int64_t parameter) {
+  if (absl::Status less = ReleaseBlobs(writing, condition, parameter); !less.ok()) return less;
+  return writing.Prepare("DELETE FROM jobs WHERE " + condition).Bind(parameter).Run();
+}
+
+// The number of a job; NOT_FOUND if there is none.
+absl::StatusOr<std::int64_t> NumberOf(Database& database, const JobId& id) {
+  Statement number = database.Prepare("SELECT number FROM jobs WHERE uuid = ?");
+  number.Bind(std::string_view(id.uuid()));
+  const auto row = number.Step();
+  if (!row.ok()) return row.status();
+  if (!*row) return NoSuchJob(id);
+  return number.Integer(0);
+}
+
+absl::StatusOr<std::optional<JobId>> Find(Database& database, const RequestKey& key) {
+  Statement request =
+      database.Prepare("SELECT fingerprint, uuid FROM requests WHERE caller = ? AND method = ? AND request_id = ?");
+  request.Bind(std::string_view(key.caller)).Bind(std::string_view(key.method)).Bind(std::string_view(key.request_id));
+  const auto row = request.Step();
+  if (!row.ok()) return row.status();
+  if (!*row) return std::optional<JobId>();
+  const auto id = JobId::FromName("jobs/" + request.Bytes(1));
+  if (request.Bytes(0) != key.fingerprint) return RequestIdReused(key, *id);
+  return id;
+}
+
+}  // namespace
+
+absl::StatusOr<std::optional<JobId>> JobArchive::FindRequest(const RequestKey& key, WallTime now) {
+  if (absl::Status dropped = DropRequests(now - kRequestMemory); !dropped.ok()) return dropped;
+  absl::StatusOr<std::optional<JobId>> found;
+  const absl::Status read = storage_.Read([&](Database& database) {
+    found = Find(database, key);
+    return found.status();
+  });
+  return read.ok() ? found : absl::StatusOr<std::optional<JobId>>(read);
+}
+
+absl::StatusOr<JobId> JobArchive::Insert(const JobId& id, const std::string& owner, std::string message,
+                                         const Submission& submission, const std::optional<RequestKey>& key,
+                                         WallTime now) {
+  const auto request = storage_.Prepare(submission.request);
+  if (!request.ok()) return request.status();
+  std::optional<Blob> scene;
+  if (submission.scene != nullptr) {
+    auto prepared = storage_.Prepare(submission.scene_sha256, submission.scene);
+    if (!prepared.ok()) return prepared.status();
+    scene = *std::move(prepared);
+  }
+  JobId made = id;
+  const absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
+    if (key) {
+      const auto earlier = Find(writing.database(), *key);
+      if (!earlier.ok()) return earlier.status();
+      if (*earlier) {
+        made = **earlier;
+        return absl::OkStatus();
+      }
+      Statement note = writing.Prepare("INSERT INTO requests VALUES(?, ?, ?, ?, ?, ?)");
+      note.Bind(std::string_view(key->caller)).Bind(std::string_view(key->method));
+      note.Bind(std::string_view(key->request_id)).Bind(std::string_view(key->fingerprint));
+      note.Bind(std::string_view(id.uuid())).Bind(SecondsOf(now));
+      if (absl::Status noted = note.Run(); !noted.ok()) return noted;
+    }
+    if (absl::Status used = writing.Use(*request); !used.ok()) return used;
+    if (scene) {
+      if (absl::Status used = writing.Use(*scene); !used.ok()) return used;
+    }
+    Statement job = writing.Prepare(
+        "INSERT INTO jobs(uuid, owner, request, scene, message, sequence, build) VALUES(?, ?, ?, ?, ?, 0, ?)");
+    job.Bind(std::string_view(id.uuid())).Bind(std::string_view(owner)).Bind(std::string_view(request->sha256));
+    job.Bind(scene ? std::optional(scene->sha256) : std::nullopt).BindBlob(message).Bind(std::string_view(build_));
+    return job.Run();
+  });
+  if (!written.ok()) return written;
+  return made;
+}
+
+absl::Status JobArchive::SaveCheckpoint(const JobId& id, std::string checkpoint) {
+  const auto blob = storage_.Prepare(std::move(checkpoint));
+  if (!blob.ok()) return blob.status();
+  return storage_.Write([&](Writing& writing) -> absl::Status {
+    Statement job = writing.Prepare("SELECT number, checkpoint FROM jobs WHERE uuid = ? AND sequence = 0");
+    job.Bind(std::string_view(id.uuid()));
+    const auto row = job.Step();
+    if (!row.ok()) return row.status();
+    if (!*row) return NoSuchJob(id);
+    if (absl::Status used = writing.Use(*blob); !used.ok()) return used;
+    if (absl::Status less = writing.Release(job.OptionalBytes(1)); !less.ok()) return less;
+    return writing.Prepare("UPDATE jobs SET checkpoint = ?, build = ? WHERE number = ?")
+        .Bind(std::string_view(blob->sha256))
+        .Bind(std::string_view(build_))
+        .Bind(job.Integer(0))
+        .Run();
+  });
+}
+
+absl::Status JobArchive::End(const JobId& id, std::string message, std::uint64_t sequence,
+                             std::optional<std::string> result, WallTime now) {
+  std::optional<Blob> blob;
+  if (result) {
+    auto prepared = storage_.Prepare(*std::move(result));
+    if (!prepared.ok()) return prepared.status();
+    blob = *std::move(prepared);
+  }
+  return storage_.Write([&](Writing& writing) -> absl::Status {
+    const auto number = NumberOf(writing.database(), id);
+    if (!number.ok()) return number.status();
+    if (blob) {
+      if (absl::Status used = writing.Use(*blob); !used.ok()) return used;
+    }
+    Statement old = writing.Prepare("SELECT result, checkpoint, scene FROM jobs WHERE number = ?");
+    old.Bind(*number);
+    if (const auto row = old.Step(); !row.ok()) return row.status();
+    for (int column = 0; column < 3; ++column) {
+      if (absl::Status less = writing.Release(old.OptionalBytes(column)); !less.ok()) return less;
+    }
+    return writing
+        .Prepare(
+            "UPDATE jobs SET message = ?, sequence = ?, end_time = ?, result = ?, checkpoint = NULL, scene = NULL, "
+            "build = ? WHERE number = ?")
+        .BindBlob(message)
+        .Bind(static_cast<std::int64_t>(sequence))
+        .Bind(SecondsOf(now))
+        .Bind(blob ? std::optional(blob->sha256) : std::nullopt)
+        .Bind(std::string_view(build_))
+        .Bind(*number)
+        .Run();
+  });
+}
+
+absl::Status JobArchive::Delete(const JobId& id) {
+  return storage_.Write([&](Writing& writing) -> absl::Status {
+    const auto number = NumberOf(writing.database(), id);
+    if (!number.ok()) return number.status();
+    return RemoveJobs(writing, "number = ?", *number);
+  });
+}
+
+absl::Status JobArchive::DropEnded(WallTime before) {
+  return storage_.Write([&](Writing& writing) { return RemoveJobs(writing, "end_time < ?", SecondsOf(before)); });
+}
+
+absl::Status JobArchive::DropRequests(WallTime before) {
+  bool any = false;
+  const absl::Status looked = storage_.Read([&](Database& database) {
+    const auto row = database.Prepare("SELECT 1 FROM requests WHERE time < ?").Bind(SecondsOf(before)).Step();
+    any = row.ok() && *row;
+    return row.status();
+  });
+  if (!looked.ok() || !any) return looked;
+  return storage_.Write([&](Writing& writing) {
+    return writing.Prepare("DELETE FROM requests WHERE time < ?").Bind(SecondsOf(before)).Run();
+  });
+}
+
+absl::StatusOr<ArchivedJob> JobArchive::Get(const JobId& id) {
+  ArchivedJob found;
+  const absl::Status read = storage_.Read([&](Database& database) -> absl::Status {
+    Statement job = database.Prepare(std::string(kColumns) + "WHERE uuid = ?");
+    job.Bind(std::string_view(id.uuid()));
+    const auto row = job.Step();
+    if (!row.ok()) return row.status();
+    if (!*row) return NoSuchJob(id);
+    found = JobOf(job);
+    return absl::OkStatus();
+  });
+  if (!read.ok()) return read;
+  return found;
+}
+
+absl::StatusOr<JobArchive::Page> JobArchive::List(std::optional<std::uint64_t> before, std::size_t limit) {
+  Page page;
+  const absl::Status read = storage_.Read([&](Database& database) -> absl::Status {
+    Statement jobs = database.Prepare(std::string(kColumns) + "WHERE number < ? ORDER BY number DESC LIMIT ?");
+    jobs.Bind(before ? static_cast<std::int64_t>(*before) : INT64_MAX).Bind(static_cast<std::int64_t>(limit) + 1);
+    while (true) {
+      const auto row = jobs.Step();
+      if (!row.ok()) return row.status();
+      if (!*row) return absl::OkStatus();
+      if (page.jobs.size() == limit) {
+        page.next_before = page.positions.back();
+        return absl::OkStatus();
+      }
+      page.jobs.push_back(JobOf(jobs));
+      page.positions.push_back(static_cast<std::uint64_t>(jobs.Integer(5)));
+    }
+  });
+  if (!read.ok()) return read;
+  return page;
+}
+
+absl::StatusOr<std::vector<ArchivedJob>> JobArchive::Unfinished() {
+  std::vector<ArchivedJob> unfinished;
+  const absl::Status read = storage_.Read([&](Database& database) -> absl::Status {
+    Statement jobs = database.Prepare(std::string(kColumns) + "WHERE end_time IS NULL ORDER BY number");
+    while (true) {
+      const auto row = jobs.Step();
+      if (!row.ok()) return row.status();
+      if (!*row) return absl::OkStatus();
+      unfinished.push_back(JobOf(jobs));
+    }
+  });
+  if (!read.ok()) return read;
+  return unfinished;
+}
+
+absl::StatusOr<Submission> JobArchive::FetchSubmission(const JobId& id) {
+  std::string request;
+  std::optional<std::string> scene;
+  const absl::Status read = storage_.Read([&](Database& database) -> absl::Status {
+    Statement job = database.Prepare("SELECT request, scene FROM jobs WHERE uuid = ?");
+    job.Bind(std::string_view(id.uuid()));
+    const auto row = job.Step();
+    if (!row.ok()) return row.status();
+    if (!*row) return NoSuchJob(id);
+    request = job.Bytes(0);
+    scene = job.OptionalBytes(1);
+    return absl::OkStatus();
+  });
+  if (!read.ok()) return read;
+  Submission submission;
+  auto bytes = storage_.Fetch(request);
+  if (!bytes.ok()) return bytes.status();
+  submission.request = *std::move(bytes);
+  if (scene) {
+    auto file = storage_.Fetch(*scene);
+    if (!file.ok()) return file.status();
+    submission.scene_sha256 = *scene;
+    submission.scene = std::make_shared<const std::string>(*std::move(file));
+  }
+  return submission;
+}
+
+absl::StatusOr<std::optional<std::string>> JobArchive::FetchCheckpoint(const JobId& id) {
+  std::optional<std::string> checkpoint;
+  const absl::Status read = storage_.Read([&](Database& database) -> absl::Status {
+    Statement job = database.Prepare("SELECT checkpoint FROM jobs WHERE uuid = ?");
+    job.Bind(std::string_view(id.uuid()));
+    const auto row = job.Step();
+    if (!row.ok()) return row.status();
+    if (*row) checkpoint = job.OptionalBytes(0);
+    return absl::OkStatus();
+  });
+  if (!read.ok()) return read;
+  if (!checkpoint) return checkpoint;
+  auto bytes = storage_.Fetch(*checkpoint);
+  if (!bytes.ok()) return bytes.status();
+  return std::optional(*std::move(bytes));
+}
+
+}  // namespace flatlight

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_STORE_JOB_ARCHIVE_H_
+#define FLATLIGHT_SERVER_STORE_JOB_ARCHIVE_H_
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "server/store/job_id.h"
+#include "server/store/job_store.h"
+#include "server/store/storage.h"
+
+namespace flatlight {
+
+// A job as it is written: bytes that only their writer understands.
+struct ArchivedJob {
+  JobId id;
+  std::string owner;
+  std::string message;                // As it was accepted, or as it ended.
+  std::uint64_t sequence = 0;         // Of that state; 0: it has not ended.
+  std::optional<std::string> result;  // The hash of it.
+  bool ended() const { return sequence > 0; }
+};
+
+// Jobs on disk. Each change is committed when the call returns, and has not happened if it returns an error. Safe to
+// use from any thread.
+class JobArchive {
+ public:
+  JobArchive(Storage& storage, std::string build) : storage_(storage), build_(std::move(build)) {}
+
+  // As JobStore's.
+  absl::StatusOr<std::optional<JobId>> FindRequest(const RequestKey& key, WallTime now);
+  // Returns the id of the job that the same request made before, if there is one, else that of the new one.
+  absl::StatusOr<JobId> Insert(const JobId& id, const std::string& owner, std::string message,
+                               const Submission& submission, const std::optional<RequestKey>& key, WallTime now);
+  // Replaces the one before.
+  absl::Status SaveCheckpoint(const JobId& id, std::string checkpoint);
+  // The last change of a job: nothing remains but message and result. `sequence` > 0.
+  absl::Status End(const JobId& id, std::string message, std::uint64_t sequence, std::optional<std::string> result,
+                   WallTime now);
+  absl::Status Delete(const JobId& id);
+  // Forgets jobs that ended before, and requests made before.
+  absl::Status DropEnded(WallTime before);
+  absl::Status DropRequests(WallTime before);
+
+  // NOT_FOUND if there is none.
+  absl::StatusOr<ArchivedJob> Get(const JobId& id);
+  struct Page {
+    std::vector<ArchivedJob> jobs;
+    std::vector<std::uint64_t> positions;
+    std::optional<std::uint64_t> next_before;
+  };
+  absl::StatusOr<Page> List(std::optional<std::uint64_t> before, std::size_t limit);
+  absl::StatusOr<std::vector<ArchivedJob>> Unfinished();  // Oldest first.
+
+  absl::StatusOr<std::string> Fetch(const std::string& sha256) { return storage_.Fetch(sha256); }
+  // Of a job that has not ended.
+  absl::StatusOr<Submission> FetchSubmission(const JobId& id);
+  absl::StatusOr<std::optional<std::string>> FetchCheckpoint(const JobId& id);
+
+ private:
+  Storage& storage_;
+  const std::string build_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_STORE_JOB_ARCHIVE_H_

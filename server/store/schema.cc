@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/schema.h"
+
+#include "server/store/error.h"
+
+namespace flatlight {
+namespace {
+
+// Bytes of any length, by their hash, once each; what is large lies in files of that name (bytes is null). `uses`
+// counts the columns that name it.
+constexpr char kJobs[] = R"sql(
+CREATE TABLE blobs(
+  sha256 TEXT PRIMARY KEY,
+  bytes BLOB,
+  uses INTEGER NOT NULL
+) WITHOUT ROWID;
+CREATE TABLE jobs(
+  number INTEGER PRIMARY KEY AUTOINCREMENT,  -- In the order of creation.
+  uuid TEXT NOT NULL UNIQUE,
+  owner TEXT NOT NULL,
+  request TEXT NOT NULL REFERENCES blobs DEFERRABLE INITIALLY DEFERRED,  -- What made it: a CreateJobRequest.
+  scene TEXT REFERENCES blobs DEFERRABLE INITIALLY DEFERRED,             -- The uploaded file that the request names.
+  message BLOB NOT NULL,                   -- The Job as it was accepted, or as it ended.
+  sequence INTEGER NOT NULL,               -- Of that state; 0: it has not ended.
+  end_time INTEGER,                        -- s since 1970; null: it has not ended.
+  result TEXT REFERENCES blobs DEFERRABLE INITIALLY DEFERRED,            -- A RenderResult.
+  checkpoint TEXT REFERENCES blobs DEFERRABLE INITIALLY DEFERRED,        -- Of one that has not ended.
+  build TEXT NOT NULL                      -- Of Flatlight, when this row was written last.
+);
+CREATE INDEX jobs_by_end ON jobs(end_time);
+CREATE TABLE requests(
+  caller TEXT NOT NULL,
+  method TEXT NOT NULL,
+  request_id TEXT NOT NULL,
+  fingerprint TEXT NOT NULL,
+  uuid TEXT NOT NULL,     -- Of the job that it made, which may be gone.
+  time INTEGER NOT NULL,  -- s since 1970.
+  PRIMARY KEY(caller, method, request_id)
+) WITHOUT ROWID;
+CREATE INDEX requests_by_time ON requests(time);
+)sql";
+
+constexpr char kScenes[] = R"sql(
+CREATE TABLE scenes(
+  number INTEGER PRIMARY KEY AUTOINCREMENT,  -- In the order of completion.
+  sha256 TEXT NOT NULL UNIQUE REFERENCES blobs DEFERRABLE INITIALLY DEFERRED,
+  title TEXT NOT NULL,
+  size INTEGER NOT NULL
+);
+)sql";
+
+absl::StatusOr<std::int64_t> VersionOf(Database& database) {
+  Statement version = database.Prepare("PRAGMA user_version");
+  const auto row = version.Step();
+  if (!row.ok()) return row.status();
+  return version.Integer(0);
+}
+
+}  // namespace
+
+const std::vector<std::string>& Migrations() {
+  static const std::vector<std::string> migrations = {kJobs, kScenes};
+  return migrations;
+}
+
+absl::Status Migrate(Database& database, std::size_t newest) {
+  const auto version = VersionOf(database);
+  if (!version.ok()) return version.status();
+  if (*version > static_cast<std::int64_t>(newest)) {
+    return MakeError(absl::StatusCode::kFailedPrecondition, "STORAGE_TOO_NEW",
+                     database.path() + " has version " + std::to_string(*version) +
+                         "; this Flatlight knows versions to " + std::to_string(newest) +
+                         ": use the later one that wrote it");
+  }
+  for (auto step = static_cast<std::size_t>(*version); step < newest; ++step) {
+    Transaction transaction(database);
+    if (absl::Status begun = transaction.Begin(); !begun.ok()) return begun;
+    const std::string sql = Migrations()[step] + "PRAGMA user_version = " + std::to_string(step + 1);
+    if (absl::Status done = database.Execute(sql); !done.ok()) return done;
+    if (absl::Status committed = transaction.Commit(); !committed.ok()) return committed;
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace flatlight
