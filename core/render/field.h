@@ -54,6 +54,7 @@ struct RenderProgress {
   double fraction = 0;  // In [0, 1].
   double samples = 0;   // Paths of the point that has most.
   double rays = 0;
+  double records = 0;  // Of irradiance caching, in whole waves.
   std::optional<double> remaining_seconds;
   // Largest over the points: standard error or bound / max(irradiance, 1 % of the probe's mean).
   std::optional<double> relative_error;

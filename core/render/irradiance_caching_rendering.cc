@@ -150,6 +150,7 @@ void IrradianceCachingRendering::MakeRecords(Executor& executor, int threads, co
 RenderProgress IrradianceCachingRendering::Progress() const {
   RenderProgress progress;
   progress.rays = rays_;
+  progress.records = static_cast<double>(records_.size());
   progress.samples = records_.empty() ? 0 : maker_options_.rays;
   if (done_) {
     progress.fraction = 1;

@@ -47,6 +47,7 @@ void FillProgress(const JobState& state, v1::Progress& out) {
   out.set_rays(progress.rays);
   out.set_elapsed_seconds(state.elapsed_seconds);
   if (progress.remaining_seconds && !HasEnded(state.phase)) out.set_remaining_seconds(*progress.remaining_seconds);
+  out.set_records(progress.records);
   if (progress.relative_error) out.set_relative_error(*progress.relative_error);
 }
 

@@ -67,9 +67,13 @@ CommandResult Watch(const CommandLine& line, Interruption& interruption) {
   Connection& connection = (*session)->connection();
   const auto name = ResolveJobName(connection, line.job);
   if (!name.ok()) return name.status();
-  Console console(line.json ? Console::Answer::kMachine : Console::Answer::kText, line.quiet);
+  Console console(line.json || line.records ? Console::Answer::kMachine : Console::Answer::kText, line.quiet);
   WatchOptions options;
   options.max_rate = console.Rate();
+  if (line.records) {
+    options.max_rate = 20;
+    options.on_record = [](std::uint32_t, const v1::CacheRecord& record) { return PrintBytes(ToJsonLine(record)); };
+  }
   options.on_update = [&console](const v1::Job& job) {
     console.Show(job);
     return console.status();

@@ -55,11 +55,16 @@ std::string LayOutJson(std::string_view compact) {
   return out;
 }
 
-std::string ToJson(const google::protobuf::Message& message) {
+std::string ToJsonLine(const google::protobuf::Message& message) {
   std::string compact;
   // Cannot fail: the API has no Any but in google.rpc.Status, whose details are linked into the program.
   if (!google::protobuf::util::MessageToJsonString(message, &compact).ok()) compact = "{}";
-  return LayOutJson(compact);
+  return compact + '\n';
+}
+
+std::string ToJson(const google::protobuf::Message& message) {
+  const std::string line = ToJsonLine(message);
+  return LayOutJson(std::string_view(line).substr(0, line.size() - 1));
 }
 
 absl::StatusOr<v1::RenderResult> ResultFromJson(const std::string& json, const std::string& source) {

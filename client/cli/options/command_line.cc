@@ -156,6 +156,7 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   CLI::App& watch = AddCommand(app, "watch", "follow a job until it has ended", kWatchHelp);
   AddJob(watch, raw);
   AddJson(watch, raw, "the ended job");
+  watch.add_flag("--records", raw.line.records, "print cache records as they are made: JSON, one a line");
   AddQuiet(watch, raw);
   CLI::App& jobs = AddCommand(app, "jobs", "list the jobs of a server");
   AddJson(jobs, raw, "the list");

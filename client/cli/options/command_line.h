@@ -21,9 +21,10 @@ struct CommandLine {
   std::string server;   // Of --server; empty if not given.
   bool json = false;
   bool quiet = false;
-  std::string scene;   // SCENE as written; of `scenes`, the name of one, or empty.
-  std::string job;     // JOB as written.
-  std::string figure;  // Of `figure`: its name.
+  std::string scene;     // SCENE as written; of `scenes`, the name of one, or empty.
+  std::string job;       // JOB as written.
+  bool records = false;  // Of `watch`: print them as they are made.
+  std::string figure;    // Of `figure`: its name.
   v1::Settings settings;
   v1::JobClass job_class = v1::INTERACTIVE;  // Of `submit`.
   std::vector<v1::Probe> probes;             // Of --picture: in place of the scene's own.

@@ -47,6 +47,8 @@ Example:
 
 inline constexpr char kWatchHelp[] =
     R"(Waits until the job has ended, and takes up a broken connection again by itself. Ctrl-C stops watching; the job goes on.
+With --records the log of irradiance caching's records goes to standard output, from its beginning and each record once,
+and all else to standard error. The radii of records become smaller as others join them: the result has the last ones.
 JOB is jobs/UUID, a UUID, or the beginning of one.)";
 
 inline constexpr char kJobHelp[] = R"(JOB is jobs/UUID, a UUID, or the beginning of one.)";

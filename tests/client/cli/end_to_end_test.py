@@ -353,6 +353,22 @@ class EndToEnd(PictureReader, unittest.TestCase):
             for bad in ("", "xyz", "jobs/", uuid[:-1] + "g", "00000000-0000-4000-8000-000000000000"):
                 self.run_cli("show", bad, status=2)
 
+    def test_the_log_of_records(self):
+        with Daemon(FLATLIGHTD) as daemon:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            name = self.run_cli("submit", "gallery:blocker", "--method", "irradiance-caching", "--quiet").stdout.strip()
+            watch = self.run_cli("watch", name, "--records")
+            self.assertIn("succeeded", watch.stderr)
+            log = [json.loads(line) for line in watch.stdout.splitlines()]
+            result = json.loads(self.run_cli("fetch", name, "--json").stdout)
+            for record in result["records"]:
+                self.assertEqual(len(record.pop("radius")), 2)
+            self.assertEqual(log, result["records"])
+            self.assertEqual(len(log), result["statistics"]["records"])
+            waves = [record["wave"] for record in log]
+            self.assertEqual(waves, sorted(waves))
+            self.assertGreater(waves[-1], 0)
+
     def test_cancel(self):
         with Daemon(FLATLIGHTD) as daemon:
             self.environment["FLATLIGHT_SERVER"] = daemon.address
