@@ -48,10 +48,10 @@ void SetErrors(ErrorControl control, std::size_t degree, const ErrorScale& scale
   record.growth = {};
   switch (control) {
     case ErrorControl::kSplitSphere:
-      record.growth[1] = seen.inverse_distance;
+      record.growth[1] = seen.inverse_distance.value_or(0);
       break;
     case ErrorControl::kBoundedSplitSphere:
-      record.growth[1] = std::max({seen.inverse_distance, Over(Size(record.derivative[1]), record.scale),
+      record.growth[1] = std::max({seen.inverse_distance.value_or(0), Over(Size(record.derivative[1]), record.scale),
                                    scale.extent > 0 ? 1 / scale.extent : 0});
       break;
     case ErrorControl::kRadiometricHessian:

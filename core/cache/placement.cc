@@ -49,33 +49,38 @@ std::vector<std::vector<CacheRecord*>> Placement::Sorted(std::vector<CacheRecord
   return sorted;
 }
 
-std::vector<RecordPlace> Placement::First() const {
-  std::vector<std::size_t> counts(points_.size(), kFirstRecords);
+std::vector<RecordPlace> Placement::First(const std::vector<std::uint32_t>& tracks, std::size_t most) const {
+  std::vector<std::size_t> counts(tracks.size(), kFirstRecords);
   if (options_.most_records) {
     // A third of them, and no track without.
-    const std::size_t first = std::max((*options_.most_records + 2) / 3, points_.size());
+    const std::size_t first = std::max((most + 2) / 3, tracks.size());
     double all = 0;
-    for (std::size_t t = 0; t < points_.size(); ++t) all += Extent(t);
-    std::size_t left = first - points_.size();
-    for (std::size_t t = 0; t < points_.size(); ++t) {
-      const double share = all > 0 ? Extent(t) / all * static_cast<double>(first - points_.size()) : 0;
+    for (const std::uint32_t t : tracks) all += Extent(t);
+    std::size_t left = first - tracks.size();
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      const double share = all > 0 ? Extent(tracks[i]) / all * static_cast<double>(first - tracks.size()) : 0;
       const auto more = std::min(left, static_cast<std::size_t>(std::floor(share + 0.5)));
-      counts[t] = 1 + more, left -= more;
+      counts[i] = 1 + more, left -= more;
     }
   }
   std::vector<RecordPlace> places;
-  for (std::size_t t = 0; t < points_.size(); ++t) {
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const std::vector<double>& points = points_[tracks[i]];
     Gap gap;
-    gap.points = points_[t], gap.low = points_[t].front(), gap.high = points_[t].back();
-    for (const double at : gap.Places(counts[t], 1)) places.push_back({static_cast<std::uint32_t>(t), at});
+    gap.points = points, gap.low = points.front(), gap.high = points.back();
+    for (const double at : gap.Places(counts[i], 1)) places.push_back({tracks[i], at});
   }
   return places;
 }
 
 std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) const {
-  if (records.empty()) return First();
   const std::size_t power = GrowthPower(options_.control, options_.degree);
   const auto sorted = Sorted(records);
+  const std::size_t budget = options_.most_records.value_or(0), left = budget - std::min(budget, records.size());
+  std::vector<std::uint32_t> bare;
+  for (std::size_t t = 0; t < points_.size(); ++t)
+    if (sorted[t].empty()) bare.push_back(static_cast<std::uint32_t>(t));
+  if (!bare.empty()) return First(bare, left);
   struct Candidate {
     std::uint32_t track;
     Gap gap;
@@ -95,7 +100,6 @@ std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) cons
   if (options_.most_records) {
     // All that is left is planned for where the error is largest; if there is a good estimate of it, where it takes
     // most off the sum of squares.
-    const std::size_t left = *options_.most_records - std::min(*options_.most_records, records.size());
     const auto gain = [&](const Candidate& c) {
       const double now = std::min(c.gap.ErrorWith(c.count, power), 1e100);
       if (options_.control != ErrorControl::kVisibilityEvents) return now;

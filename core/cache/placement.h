@@ -34,13 +34,15 @@ class Placement {
   // `points`: by track, where irradiance is wanted, in order of the coordinate along the track; none empty.
   Placement(std::vector<std::vector<double>> points, const PlacementOptions& options);
 
-  // The next wave; empty when the records do. Sets the errors of all records.
+  // The next wave; empty when the records do. Sets the errors of all records. They may have been there before, of
+  // whatever placement; on tracks that have none a first wave comes first.
   std::vector<RecordPlace> Next(std::vector<CacheRecord>& records) const;
   // Sets footprints, when no wave is left: they cover every point.
   void SetFootprints(std::vector<CacheRecord>& records) const;
 
  private:
-  std::vector<RecordPlace> First() const;
+  // The first wave on those that have no records, of `most` that are left to be made.
+  std::vector<RecordPlace> First(const std::vector<std::uint32_t>& tracks, std::size_t most) const;
   // By track, in order.
   std::vector<std::vector<CacheRecord*>> Sorted(std::vector<CacheRecord>& records) const;
   double Extent(std::size_t track) const { return points_[track].back() - points_[track].front(); }

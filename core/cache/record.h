@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "core/scene/spectrum.h"
@@ -23,8 +24,9 @@ struct VisibilityEvent {
 
 // What a record's place sees, for estimates of how fast irradiance changes. Normalised units.
 struct Surroundings {
-  double inverse_distance = 0;  // Its mean over the hemicircle, weighed by the cosine.
-  Spectrum radiometric;         // E'' by the motion of what is seen alone, as if nothing could be covered (J12).
+  // Its mean over the hemicircle, weighed by the cosine; absent unless error control asks for it.
+  std::optional<double> inverse_distance;
+  Spectrum radiometric;  // E'' by the motion of what is seen alone, as if nothing could be covered (J12).
   // The same for radiance 1/2 everywhere, which makes irradiance 1: what each piece of a curve adds to it, without
   // signs, for with them it vanishes in closed rooms (THEORY 17 A13).
   double geometric = 0;

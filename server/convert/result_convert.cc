@@ -97,11 +97,9 @@ v1::RenderResult ResultToProto(const SceneOutline& scene, const Field& field) {
     unsampled += static_cast<double>(std::count(probe.samples.begin(), probe.samples.end(), 0.0));
   if (unsampled > 0) result.mutable_statistics()->set_unsampled_points(unsampled);
   if (!field.records.empty()) result.mutable_statistics()->set_records(static_cast<double>(field.records.size()));
-  for (const RecordField& record : field.records) {
-    v1::CacheRecord& out = *result.add_records();
-    FillRecord(record, out);
-    out.add_radius(record.left_radius), out.add_radius(record.right_radius);
-  }
+  FillRecords(field.records, *result.mutable_records());
+  if (field.reused_records > 0)
+    result.mutable_statistics()->set_reused_records(static_cast<double>(field.reused_records));
   result.mutable_statistics()->set_rays(field.rays);
   if (field.error_bound) result.mutable_statistics()->set_error_bound(*field.error_bound);
   return result;

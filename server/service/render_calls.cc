@@ -11,6 +11,7 @@
 #include "core/render/plan.h"
 #include "server/convert/settings_convert.h"
 #include "server/service/job_convert.h"
+#include "server/service/known_records.h"
 #include "server/service/page.h"
 #include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
@@ -102,6 +103,12 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
   auto planned = MakePlannedScene(backend, request.scene(), request.settings(), proceed);
   if (!planned.ok()) return planned.status();
   auto spec = std::make_shared<JobSpec>();
+  if (request.has_records()) {
+    auto taken = TakeRecords(request.records(), *planned->scene, planned->plan, backend.jobs);
+    if (!taken.ok()) return taken.status();
+    planned->plan.known_records = std::move(taken->records);
+    spec->records_checksum = std::move(taken->checksum);
+  }
   spec->id = JobId::Random();
   spec->owner = caller.name;
   spec->job_class = *job_class;

@@ -27,7 +27,9 @@ std::size_t BytesPerPoint(const SceneOutline& scene, bool with_values, bool with
 
 // Upper bound of a record's bytes in a message, without its radius.
 std::size_t BytesOf(const RecordField& record) {
-  const std::size_t values = 4 + record.irradiance.size() + record.gradient.size() + record.hessian.size();
+  // Position, normal, arc length, noise, unknown jump, and three of what it sees.
+  const std::size_t values = 10 + record.irradiance.size() + record.gradient.size() + record.hessian.size() +
+                             record.third.size() + record.fourth.size() + record.radiometric.size();
   return kFrameBytes + record.curve.size() + sizeof(double) * values;
 }
 

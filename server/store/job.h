@@ -30,6 +30,7 @@ struct JobSpec {
   std::shared_ptr<const SceneOutline> scene;  // Of the scene itself, only a job that has not ended has a share.
   Settings settings;                          // As requested.
   Plan plan;
+  std::optional<std::string> records_checksum;  // Of those that the request brought.
   WallTime create_time;
 };
 

@@ -135,6 +135,12 @@ void AddSceneCommands(CLI::App& app, Raw& raw) {
     command.add_option("--picture", raw.picture, "a picture of the light in the whole scene, in place of its probes")
         ->type_name("WxH");
     AddSettings(command, raw);
+    if (render || submit) {
+      command
+          .add_option("--records", raw.line.known_records,
+                      "begin with the records of a result (JSON) or of an ended job of the server (jobs/UUID)")
+          ->type_name("FILE");
+    }
     if (render) AddOutputs(command, raw);
     if (submit) AddJobClass(command, raw);
     AddJson(command, raw, render ? "the result" : submit ? "the job" : "the plan");

@@ -51,6 +51,10 @@ class EndToEnd(PictureReader, unittest.TestCase):
             file.write(text)
         return name
 
+    def read_json(self, name):
+        with open(self.path(name)) as file:
+            return json.load(file)
+
     def assert_no_leftovers(self):
         self.assertEqual(glob.glob(self.path(".flatlight-*")), [])
 
@@ -368,6 +372,61 @@ class EndToEnd(PictureReader, unittest.TestCase):
             waves = [record["wave"] for record in log]
             self.assertEqual(waves, sorted(waves))
             self.assertGreater(waves[-1], 0)
+
+    def test_records_are_reused(self):
+        caching = ["gallery:cornell", "--method", "irradiance-caching"]
+        self.run_cli("render", *caching, "--tolerance", "0.05", "-o", "coarse.json")
+        again = self.run_cli("render", *caching, "--tolerance", "0.05", "--records", "coarse.json", "-o", "again.json")
+        self.run_cli("compare", "coarse.json", "again.json", "--tolerance", "0")
+        coarse, same = (self.read_json(name) for name in ("coarse.json", "again.json"))
+        self.assertEqual(same["records"], coarse["records"])
+        self.assertEqual(same["recordsSeal"], coarse["recordsSeal"])
+        self.assertNotEqual(same["jobKey"], coarse["jobKey"])
+        self.assertEqual(same["statistics"]["reusedRecords"], len(coarse["records"]))
+        self.assertIn(f"({len(coarse['records'])} reused)", again.stdout)
+        self.run_cli("render", *caching, "--tolerance", "0.01", "--records", "coarse.json", "-o", "fine.json")
+        fine = self.read_json("fine.json")
+        self.assertGreater(fine["statistics"]["records"], fine["statistics"]["reusedRecords"])
+
+        text = json.dumps(coarse)
+        coarse["records"][0]["irradiance"][0] *= 1 + 1e-15
+        self.write("changed.json", json.dumps(coarse))
+        del coarse["records"][0]
+        self.write("shorter.json", json.dumps(coarse))
+        self.write("cut.json", text[:-len(text) // 3])
+        self.run_cli("render", "gallery:cornell", "--samples", "1", "-o", "none.json")
+        for records, arguments, message in (
+                ("changed.json", caching, "do not match their checksum"),
+                ("shorter.json", caching, "do not match their checksum"),
+                ("cut.json", caching, "cut.json is not a result in JSON form"),
+                ("none.json", caching, "holds no records"),
+                ("gone.json", caching, "gone.json"),
+                ("jobs/7", caching, "a job is named jobs/{uuid}"),
+                ("coarse.json", ["gallery:penumbra", *caching[1:]], "are of another world"),
+                ("coarse.json", [*caching, "--max-bounces", "1"], "max bounces all, and this job has 1"),
+                ("coarse.json", [*caching, "--samples", "32"], "with gather"),
+                ("coarse.json", ["gallery:cornell"], "are for irradiance-caching alone")):
+            error = self.run_cli("render", *arguments, "--records", records, status=2).stderr
+            self.assertIn(message, error)
+            self.assertEqual(error.count("\n"), 1, error)
+
+    def test_records_of_a_job_on_the_server(self):
+        with Daemon(FLATLIGHTD) as daemon:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            caching = ["gallery:blocker", "--method", "irradiance-caching"]
+            name = self.run_cli("submit", *caching, "--quiet").stdout.strip()
+            self.run_cli("watch", name)
+            self.run_cli("render", *caching, "--records", name, "-o", "a.json")
+            self.run_cli("fetch", name, "-o", "b.json")
+            self.run_cli("render", *caching, "--records", "b.json", "-o", "c.json")
+            self.run_cli("render", *caching, "-o", "d.json")
+            a, b, c, d = (self.read_json(f"{name}.json") for name in "abcd")
+            # What the server remembers counts only if it is asked for.
+            self.assertEqual(d["jobKey"], b["jobKey"])
+            self.assertNotIn("reusedRecords", d["statistics"])
+            self.assertEqual(a["jobKey"], c["jobKey"])
+            for result in (a, c, d):
+                self.assertEqual(result["records"], b["records"])
 
     def test_cancel(self):
         with Daemon(FLATLIGHTD) as daemon:

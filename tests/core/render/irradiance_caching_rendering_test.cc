@@ -59,8 +59,8 @@ Difference FromReference(const std::shared_ptr<const Scene>& scene, const Settin
 }
 
 // A room with a lamp, a blocker, a disc, and a wall that stands on the floor and lets light through above.
-SceneMaker DividedRoom() {
-  SceneMaker maker = SquareRoom({.reflectance = {0.6}}, 60);
+SceneMaker DividedRoom(std::uint32_t points = 60) {
+  SceneMaker maker = SquareRoom({.reflectance = {0.6}}, points);
   maker.Segment("lamp", {-0.4, 0.9}, {-0.8, 0.85}, {.radiance = {5}});
   maker.Segment("divider", {0.1, -1}, {0.1, 0.4}, {.reflectance = {0.3}});
   maker.Segment("blocker", {-0.7, 0.1}, {-0.4, 0.15}, {.reflectance = {0.5}});
@@ -172,6 +172,85 @@ TEST(IrradianceCachingRenderingTest, DarkScenesAreDark) {
   for (const ProbeField& probe : ended.field->probes)
     for (const double value : probe.irradiance) EXPECT_EQ(value, 0);
   EXPECT_TRUE(ended.field->records.empty());
+}
+
+Ended RenderKnowing(const std::shared_ptr<const Scene>& scene, const Settings& settings, const Field& earlier,
+                    int threads = 1) {
+  Plan plan = PlanFor(*scene, settings);
+  plan.known_records = std::make_shared<const std::vector<RecordField>>(earlier.records);
+  const std::unique_ptr<Rendering> rendering = StartRendering(scene, plan);
+  ThreadPool pool(threads);
+  while (!rendering->done()) rendering->Advance(pool, Cancellation(), SteadyClock(), std::chrono::microseconds(200));
+  return {rendering->Snapshot(), rendering->end_reason()};
+}
+
+TEST(IrradianceCachingRenderingTest, TheSameJobNeedsNoMoreThanItsOwnRecords) {
+  const auto scene = DividedRoom().Build();
+  for (const bool rays : {false, true}) {
+    for (const ErrorControl control : {ErrorControl::kVisibilityEvents, ErrorControl::kSplitSphere}) {
+      Settings settings = Caching();
+      settings.max_bounces = 1;
+      settings.error_control = control;
+      settings.tolerance = 0.1;
+      if (rays) settings.samples = 64;
+      const Ended once = Render(scene, settings);
+      const Ended again = RenderKnowing(scene, settings, *once.field);
+      EXPECT_EQ(HashOf(*again.field), HashOf(*once.field));
+      EXPECT_EQ(again.field->reused_records, once.field->records.size());
+      EXPECT_EQ(again.field->records.size(), once.field->records.size());
+      EXPECT_EQ(once.field->reused_records, 0u);
+    }
+  }
+}
+
+TEST(IrradianceCachingRenderingTest, AFinerJobBeginsWithTheRecordsOfACoarserOne) {
+  const auto coarse = DividedRoom().Build();
+  Settings settings = Caching();
+  settings.max_bounces = 1;
+  settings.tolerance = 0.05;
+  const Ended first = Render(coarse, settings);
+  SceneMaker maker = DividedRoom(200);
+  maker.PointProbe({0.5, -0.5}, {0, 1});
+  const auto fine = maker.Build();
+  settings.tolerance = 0.005;
+  const Ended alone = Render(fine, settings);
+  const Ended knowing = RenderKnowing(fine, settings, *first.field);
+  EXPECT_EQ(knowing.field->reused_records, first.field->records.size());
+  const std::size_t made = knowing.field->records.size() - knowing.field->reused_records;
+  EXPECT_LT(made, alone.field->records.size());
+  EXPECT_GT(made, 0u);
+  for (const int threads : {2, 5})
+    EXPECT_EQ(HashOf(*RenderKnowing(fine, settings, *first.field, threads).field), HashOf(*knowing.field));
+  Settings truth;
+  truth.method = Method::kReference;
+  truth.max_bounces = 1;
+  const auto expected = Render(fine, truth).field;
+  double squares = 0, mean = 0;
+  const std::vector<double>& truths = expected->probes[0].irradiance;
+  for (std::size_t i = 0; i < truths.size(); ++i) {
+    const double off = knowing.field->probes[0].irradiance[i] - truths[i];
+    squares += off * off, mean += truths[i];
+  }
+  const auto n = static_cast<double>(truths.size());
+  EXPECT_LT(std::sqrt(squares / n), 1.5 * settings.tolerance.value() * mean / n);
+}
+
+// What is told may be anything: a record that does not lie where it says is of no use.
+TEST(IrradianceCachingRenderingTest, RecordsThatLieElsewhereAreLeft) {
+  const auto scene = DividedRoom().Build();
+  Settings settings = Caching();
+  settings.max_bounces = 1;
+  settings.max_records = 20;
+  const Ended once = Render(scene, settings);
+  Field moved = *once.field;
+  for (std::size_t i = 0; i < moved.records.size(); ++i) {
+    if (i % 3 == 0) moved.records[i].position.x += 0.01;
+    if (i % 3 == 1) moved.records[i].normal = -moved.records[i].normal;
+    if (i % 3 == 2) moved.records[i].arc_length.reset();
+  }
+  const Ended again = RenderKnowing(scene, settings, moved);
+  EXPECT_EQ(again.field->reused_records, 0u);
+  EXPECT_EQ(HashOf(*again.field), HashOf(*once.field));
 }
 
 std::vector<std::string> Mistakes(const Scene& scene, const Settings& settings) {
