@@ -18,6 +18,9 @@ constexpr std::size_t kFirstRecords = 3;  // Of a track.
 constexpr std::size_t kMostAtOnce = 4;    // Into a gap, for its estimate tells little about what lies far inside.
 constexpr std::ptrdiff_t kBeside = 2;     // Records to each side of a point that are asked.
 
+// So much less than the tolerance records of an overture are placed for (pbrt's priming asks for as much more weight).
+constexpr double kOverture = 1.5;
+
 // The largest distance up to `most` at which the error is at most `error`.
 double RadiusFor(const CacheRecord& record, double error, double most) {
   double high = most;
@@ -73,6 +76,22 @@ std::vector<RecordPlace> Placement::First(const std::vector<std::uint32_t>& trac
   return places;
 }
 
+void Placement::ClampNeighbours(const std::vector<CacheRecord*>& track, double extent) const {
+  std::vector<double> radius;
+  for (const CacheRecord* record : track) radius.push_back(RadiusFor(*record, options_.tolerance, extent));
+  std::vector<double> clamped = radius;
+  for (std::size_t i = 1; i < track.size(); ++i)
+    clamped[i] = std::min(clamped[i], clamped[i - 1] + (track[i]->at - track[i - 1]->at));
+  for (std::size_t i = track.size(); i-- > 1;)
+    clamped[i - 1] = std::min(clamped[i - 1], clamped[i] + (track[i]->at - track[i - 1]->at));
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    if (!(clamped[i] > 0 && clamped[i] < radius[i])) continue;
+    // The same error at so many times smaller a distance.
+    double stretch = 1;
+    for (double& growth : track[i]->growth) growth *= stretch, stretch *= radius[i] / clamped[i];
+  }
+}
+
 std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) const {
   const std::size_t power = GrowthPower(options_.control, options_.degree);
   const auto sorted = Sorted(records);
@@ -81,6 +100,7 @@ std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) cons
   for (std::size_t t = 0; t < points_.size(); ++t)
     if (sorted[t].empty()) bare.push_back(static_cast<std::uint32_t>(t));
   if (!bare.empty()) return First(bare, left);
+  const double tolerance = options_.tolerance / (options_.overture ? kOverture : 1);
   struct Candidate {
     std::uint32_t track;
     Gap gap;
@@ -94,6 +114,7 @@ std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) cons
     for (const CacheRecord* record : sorted[t])
       scale.mean += record->Irradiance() / static_cast<double>(sorted[t].size());
     for (CacheRecord* record : sorted[t]) SetErrors(options_.control, options_.degree, scale, *record);
+    if (options_.clamp_neighbours) ClampNeighbours(sorted[t], scale.extent);
     const std::vector<const CacheRecord*> known(sorted[t].begin(), sorted[t].end());
     for (const Gap& gap : FindGaps(points_[t], known)) candidates.push_back({static_cast<std::uint32_t>(t), gap});
   }
@@ -125,7 +146,7 @@ std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) cons
     }
   } else {
     for (Candidate& c : candidates)
-      while (c.count < kMostAtOnce && c.gap.ErrorWith(c.count, power) > options_.tolerance) ++c.count;
+      while (c.count < kMostAtOnce && c.gap.ErrorWith(c.count, power) > tolerance) ++c.count;
   }
   std::vector<RecordPlace> places;
   for (const Candidate& c : candidates) {

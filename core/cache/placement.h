@@ -19,6 +19,12 @@ struct PlacementOptions {
   double tolerance = 0.01;  // The largest estimated relative error at a point,
   // or as little as this number of records can do; at least one a track.
   std::optional<std::size_t> most_records = {};
+  // Where a record's error reaches the tolerance, its neighbours' does so no further away than their distance allows:
+  // what one knows of small features others heed (Krivanek et al. 2006; THEORY 7).
+  bool clamp_neighbours = false;
+  // Records are placed for less than the tolerance and then used up to it: those of a first pass, of which more than
+  // one count at most points (as the overture of Mitsuba and the priming of pbrt).
+  bool overture = false;
 };
 
 struct RecordPlace {
@@ -43,6 +49,7 @@ class Placement {
  private:
   // The first wave on those that have no records, of `most` that are left to be made.
   std::vector<RecordPlace> First(const std::vector<std::uint32_t>& tracks, std::size_t most) const;
+  void ClampNeighbours(const std::vector<CacheRecord*>& track, double extent) const;
   // By track, in order.
   std::vector<std::vector<CacheRecord*>> Sorted(std::vector<CacheRecord>& records) const;
   double Extent(std::size_t track) const { return points_[track].back() - points_[track].front(); }

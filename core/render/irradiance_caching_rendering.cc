@@ -33,6 +33,8 @@ IrradianceCachingRendering::IrradianceCachingRendering(std::shared_ptr<const Sce
   const Settings& settings = plan.settings;
   placement_options_.control = *settings.error_control;
   placement_options_.degree = *settings.extrapolation;
+  placement_options_.clamp_neighbours = settings.neighbour_clamping.value_or(false);
+  placement_options_.overture = settings.overture.value_or(false);
   if (settings.tolerance) placement_options_.tolerance = *settings.tolerance;
   if (plan.Takes(skip::kEmission)) {
     done_ = true;

@@ -67,6 +67,9 @@ inline constexpr char kFigureHelp[] = R"(Figures:
   derivatives           gradient and Hessian below a light, exact and in all formulations; nothing blocks
   derivatives-occluded  the same behind a plate, where arc-length fails (Jarosz et al. 2012)
   convergence           error of every method against run time, with fitted slopes; -o as in `flatlight bench`
+  extrapolation         what gradient and Hessian of two records tell of the irradiance around them
+  records-walls         where records go beside a white wall, a black one and none: mean distance against Hessian
+  records-errors        error against number of records, for every error control and degree of extrapolation (.csv .svg .png)
 
 Examples:
   flatlight figure derivatives-occluded -o figure.svg -o figure.csv

@@ -173,6 +173,40 @@ class EndToEnd(PictureReader, unittest.TestCase):
         self.assertIn("there are derivatives, derivatives-occluded, convergence",
                       self.run_cli("figure", "nothing", status=2).stderr)
 
+    def test_figures_of_irradiance_caching(self):
+        run = self.run_cli("figure", "extrapolation", "-o", "a.csv", "-o", "a.svg")
+        rows = [line.split() for line in run.stdout.splitlines() if re.match(r"0\.", line)]
+        self.assertEqual([row[1] for row in rows], ["1", "2", "1", "2"])
+        for first, second in (rows[:2], rows[2:]):
+            self.assertLess(5 * float(second[2]), float(first[2]))
+        with open(self.path("a.csv")) as file:
+            self.assertEqual(len({row["probe"] for row in csv.DictReader(file)}), 5)
+
+        run = self.run_cli("figure", "records-walls", "-o", "b.json", "-o", "b.svg")
+        errors = {tuple(line.split()[::2][:2]): float(line.split()[-2]) for line in run.stdout.splitlines()
+                  if re.match("(white|black|no) wall ", line)}
+        for wall in ("white", "black", "no"):
+            self.assertGreater(errors[wall, "split-sphere"], 2.5 * errors[wall, "occlusion-hessian"])
+        records = self.read_json("b.json")["records"]
+        rows = {wall: [record["position"] for record in records if record["curve"] == wall + ", occlusion-hessian"]
+                for wall in ("black wall", "no wall")}
+        self.assertEqual(len(rows["no wall"]), 10)
+        self.assertEqual(rows["black wall"], rows["no wall"])
+        with open(self.path("b.svg")) as file:
+            text = file.read()
+        for wall in ("white wall", "black wall", "no wall"):
+            self.assertIn(wall + ", split-sphere", text)
+
+        self.run_cli("figure", "records-errors", "-o", "c.csv", "-o", "c.svg")
+        with open(self.path("c.csv")) as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 2 * 3 * 6 * 6)
+        at = lambda scene, degree, control, records: float(next(
+            row["relativeRmsError"] for row in rows
+            if [row["scene"], row["degree"], row["errorControl"], row["records"]] == [scene, degree, control, records]))
+        self.assertGreater(at("blocker", "1", "split-sphere", "16"), 30 * at("blocker", "2", "visibility-events", "16"))
+        self.run_cli("figure", "records-errors", "-o", "c.json", status=2)
+
     def test_standard_output_is_for_machines(self):
         for arguments in (["-o", "-"], ["--json"], ["-o", "-", "--json", "--quiet"]):
             run = self.run_cli("render", "gallery:unit-light", "--method", "exact", *arguments)
