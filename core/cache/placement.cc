@@ -65,14 +65,56 @@ std::vector<RecordPlace> Placement::First(const std::vector<std::uint32_t>& trac
       const auto more = std::min(left, static_cast<std::size_t>(std::floor(share + 0.5)));
       counts[i] = 1 + more, left -= more;
     }
+    // As many as there are stretches between events, if that is not too many.
+    std::vector<std::size_t> enough = counts;
+    std::size_t sum = 0;
+    for (std::size_t i = 0; i < tracks.size(); ++i)
+      sum += enough[i] = std::max(counts[i], Stretches(tracks[i]).size());
+    if (3 * sum <= 2 * most) counts = enough;
   }
   std::vector<RecordPlace> places;
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    const std::vector<double>& points = points_[tracks[i]];
-    Gap gap;
-    gap.points = points, gap.low = points.front(), gap.high = points.back();
-    for (const double at : gap.Places(counts[i], 1)) places.push_back({tracks[i], at});
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    for (const double at : FirstOf(tracks[i], counts[i])) places.push_back({tracks[i], at});
+  return places;
+}
+
+std::vector<Gap> Placement::Stretches(std::uint32_t track) const {
+  const std::span<const double> points = points_[track];
+  std::vector<Gap> stretches;
+  std::size_t first = 0;
+  const auto add = [&](std::size_t end) {
+    if (end == first) return;
+    Gap& gap = stretches.emplace_back();
+    gap.points = points.subspan(first, end - first);
+    gap.low = gap.points.front(), gap.high = gap.points.back();
+    first = end;
+  };
+  if (track < events_.size()) {
+    for (const VisibilityEvent& event : events_[track])
+      add(static_cast<std::size_t>(std::lower_bound(points.begin(), points.end(), event.at) - points.begin()));
   }
+  add(points.size());
+  return stretches;
+}
+
+std::vector<double> Placement::FirstOf(std::uint32_t track, std::size_t count) const {
+  std::vector<Gap> stretches = Stretches(track);
+  if (!options_.most_records || stretches.size() > count) {
+    Gap all;
+    all.points = points_[track], all.low = all.points.front(), all.high = all.points.back();
+    return all.Places(count, 1);
+  }
+  std::vector<std::size_t> counts(stretches.size(), 1);
+  for (std::size_t left = count - stretches.size(); left > 0; --left) {
+    const auto each = [&](std::size_t i) { return (stretches[i].high - stretches[i].low) / static_cast<double>(counts[i]); };
+    std::size_t widest = 0;
+    for (std::size_t i = 1; i < stretches.size(); ++i)
+      if (each(i) > each(widest)) widest = i;
+    ++counts[widest];
+  }
+  std::vector<double> places;
+  for (std::size_t i = 0; i < stretches.size(); ++i)
+    for (const double at : stretches[i].Places(counts[i], 1)) places.push_back(at);
   return places;
 }
 

@@ -6,9 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "core/cache/error_control.h"
+#include "core/cache/gap.h"
 #include "core/cache/record.h"
 
 namespace flatlight {
@@ -40,6 +43,10 @@ class Placement {
   // `points`: by track, where irradiance is wanted, in order of the coordinate along the track; none empty.
   Placement(std::vector<std::vector<double>> points, const PlacementOptions& options);
 
+  // By track, in order, if they are known before there are records; they must outlive this. The first wave of a budget
+  // then leaves no stretch between them without a record, if that takes no more than two thirds of it.
+  void SetEvents(std::vector<std::span<const VisibilityEvent>> events) { events_ = std::move(events); }
+
   // The next wave; empty when the records do. Sets the errors of all records. They may have been there before, of
   // whatever placement; on tracks that have none a first wave comes first.
   std::vector<RecordPlace> Next(std::vector<CacheRecord>& records) const;
@@ -49,12 +56,16 @@ class Placement {
  private:
   // The first wave on those that have no records, of `most` that are left to be made.
   std::vector<RecordPlace> First(const std::vector<std::uint32_t>& tracks, std::size_t most) const;
+  std::vector<double> FirstOf(std::uint32_t track, std::size_t count) const;
+  // Parts of the points between events.
+  std::vector<Gap> Stretches(std::uint32_t track) const;
   void ClampNeighbours(const std::vector<CacheRecord*>& track, double extent) const;
   // By track, in order.
   std::vector<std::vector<CacheRecord*>> Sorted(std::vector<CacheRecord>& records) const;
   double Extent(std::size_t track) const { return points_[track].back() - points_[track].front(); }
 
   std::vector<std::vector<double>> points_;
+  std::vector<std::span<const VisibilityEvent>> events_;
   PlacementOptions options_;
 };
 

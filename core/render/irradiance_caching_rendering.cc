@@ -96,6 +96,7 @@ void IrradianceCachingRendering::BeginWaves() {
     }
   }
   reused_ = records_.size();
+  placement_->SetEvents({events_.begin(), events_.end()});
   wave_ = placement_->Next(records_);
   done_ = wave_.empty();
   begun_ = true;
