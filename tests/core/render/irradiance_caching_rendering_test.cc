@@ -82,6 +82,34 @@ TEST(IrradianceCachingRenderingTest, AgreesWithTheReference) {
   }
 }
 
+// A floor below a lamp, all of which reflects; walls beside it, of which one shines dimly; a plate between.
+SceneMaker ReflectingFloor(bool walls, bool blocker) {
+  const Look look = {.reflectance = {0.5}};
+  SceneMaker maker;
+  maker.Segment("floor", {0, 0}, {1, 0}, look).Probe("floor", 257);
+  maker.Segment("lamp", {1, 1}, {0, 1}, {.reflectance = {0.5}, .radiance = {1}});
+  if (walls) {
+    maker.Segment("left", {0, 1}, {0, 0}, look);
+    maker.Segment("right", {1, 0}, {1, 1}, {.reflectance = {0.5}, .radiance = {0.1}});
+  }
+  if (blocker) maker.Segment("blocker", {0.45, 0.5}, {0.7, 0.5}, look);
+  return maker;
+}
+
+TEST(IrradianceCachingRenderingTest, EventsAndSecondOrderAreFarAheadAlsoWithSeveralBounces) {
+  for (const auto& [walls, blocker] : {std::pair(false, false), {false, true}, {true, false}, {true, true}}) {
+    const auto scene = ReflectingFloor(walls, blocker).Build();
+    for (const std::uint32_t records : {10u, 16u}) {
+      Settings settings = Caching();
+      settings.max_records = records;
+      const double events = FromReference(scene, settings).rms;
+      settings.error_control = ErrorControl::kSplitSphere;
+      settings.extrapolation = 1;
+      EXPECT_GT(FromReference(scene, settings).rms, 15 * events) << walls << blocker << ' ' << records;
+    }
+  }
+}
+
 // A receiver in a bend sees it right beside itself, where the direction to what it sees is lost to rounding.
 TEST(IrradianceCachingRenderingTest, AgreesWithTheReferenceInARoundRoom) {
   SceneMaker maker;
@@ -265,6 +293,18 @@ TEST(IrradianceCachingRenderingTest, RecordsThatLieElsewhereAreLeft) {
   const Ended again = RenderKnowing(scene, settings, moved);
   EXPECT_EQ(again.field->reused_records, 0u);
   EXPECT_EQ(HashOf(*again.field), HashOf(*once.field));
+}
+
+TEST(IrradianceCachingRenderingTest, ReasonsSpeakOfRaysWhereThereAreSome) {
+  const auto scene = DividedRoom().Build();
+  for (const bool rays : {false, true}) {
+    Settings settings = Caching();
+    if (rays) settings.samples = 64;
+    bool any = false;
+    for (const SkipEntry& entry : PlanFor(*scene, settings).skips)
+      any = any || entry.reason.find("rays") != std::string::npos;
+    EXPECT_EQ(any, rays);
+  }
 }
 
 std::vector<std::string> Mistakes(const Scene& scene, const Settings& settings) {

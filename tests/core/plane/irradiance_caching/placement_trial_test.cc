@@ -108,7 +108,7 @@ TEST(PlacementTrialTest, EventsAndSecondOrderAreFarAhead) {
   };
   for (const auto& [maker, records, factor] :
        {Trial{Floor(), 10, 30}, Trial{DimWall(), 10, 30}, Trial{Blocked(Floor()), 16, 30},
-        Trial{Blocked(DimWall()), 16, 30}, Trial{Blocked(Floor()), 10, 8}}) {
+        Trial{Blocked(DimWall()), 16, 30}, Trial{Blocked(Floor()), 10, 15}}) {
     EXPECT_GT(ErrorOf(maker, ErrorControl::kSplitSphere, 1, records),
               factor * ErrorOf(maker, ErrorControl::kVisibilityEvents, 2, records))
         << records;
