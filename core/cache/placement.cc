@@ -68,8 +68,7 @@ std::vector<RecordPlace> Placement::First(const std::vector<std::uint32_t>& trac
     // As many as there are stretches between events, if that is not too many.
     std::vector<std::size_t> enough = counts;
     std::size_t sum = 0;
-    for (std::size_t i = 0; i < tracks.size(); ++i)
-      sum += enough[i] = std::max(counts[i], Stretches(tracks[i]).size());
+    for (std::size_t i = 0; i < tracks.size(); ++i) sum += enough[i] = std::max(counts[i], Stretches(tracks[i]).size());
     if (3 * sum <= 2 * most) counts = enough;
   }
   std::vector<RecordPlace> places;
@@ -106,7 +105,9 @@ std::vector<double> Placement::FirstOf(std::uint32_t track, std::size_t count) c
   }
   std::vector<std::size_t> counts(stretches.size(), 1);
   for (std::size_t left = count - stretches.size(); left > 0; --left) {
-    const auto each = [&](std::size_t i) { return (stretches[i].high - stretches[i].low) / static_cast<double>(counts[i]); };
+    const auto each = [&](std::size_t i) {
+      return (stretches[i].high - stretches[i].low) / static_cast<double>(counts[i]);
+    };
     std::size_t widest = 0;
     for (std::size_t i = 1; i < stretches.size(); ++i)
       if (each(i) > each(widest)) widest = i;

@@ -27,8 +27,8 @@ struct CommandLine {
   std::string figure;    // Of `figure`: its name.
   v1::Settings settings;
   v1::JobClass job_class = v1::INTERACTIVE;  // Of `submit`.
-  std::string known_records;      // Of --records: a result file or jobs/UUID; empty if not given.
-  std::vector<v1::Probe> probes;  // Of --picture: in place of the scene's own.
+  std::string known_records;                 // Of --records: a result file or jobs/UUID; empty if not given.
+  std::vector<v1::Probe> probes;             // Of --picture: in place of the scene's own.
   std::vector<std::string> outputs;
   std::vector<std::string> results;  // The two files of `compare` and of `bench compare`.
   std::optional<double> tolerance;   // Of `compare`.

@@ -14,47 +14,18 @@ import socket
 import struct
 import subprocess
 import sys
-import tempfile
 import unittest
 
 sys.path.insert(0, __file__.rsplit("/", 2)[0])
+from cli_case import FLATLIGHT, FLATLIGHTD, CliCase
 from daemon import Daemon
 from picture_files import PictureReader
 
-FLATLIGHT, FLATLIGHTD = sys.argv[1:3]
 # A job that would take hours, but for its end.
 ENDLESS = ["gallery:penumbra", "--method", "path-tracing", "--samples", "4000000000"]
 
 
-class EndToEnd(PictureReader, unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="flatlight-test-")
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-        self.temporary = os.path.join(self.folder, "tmp")
-        os.mkdir(self.temporary)
-        self.environment = {key: value for key, value in os.environ.items() if not key.startswith("FLATLIGHT_")}
-        self.environment["TMPDIR"] = self.temporary
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def run_cli(self, *arguments, status=0, text=True, **options):
-        options.setdefault("env", self.environment)
-        run = subprocess.run([FLATLIGHT, *arguments], capture_output=True, text=text, timeout=90, cwd=self.folder, **options)
-        self.assertEqual(run.returncode, status, f"{arguments}\n{run.stdout}\n{run.stderr}")
-        self.assertEqual(os.listdir(self.temporary), [], "a private server left its folder")
-        return run
-
-    def write(self, name, text):
-        with open(self.path(name), "w") as file:
-            file.write(text)
-        return name
-
-    def read_json(self, name):
-        with open(self.path(name)) as file:
-            return json.load(file)
-
+class EndToEnd(PictureReader, CliCase):
     def assert_no_leftovers(self):
         self.assertEqual(glob.glob(self.path(".flatlight-*")), [])
 
@@ -172,40 +143,6 @@ class EndToEnd(PictureReader, unittest.TestCase):
             self.assertIn("arc-length", file.read())
         self.assertIn("there are derivatives, derivatives-occluded, convergence",
                       self.run_cli("figure", "nothing", status=2).stderr)
-
-    def test_figures_of_irradiance_caching(self):
-        run = self.run_cli("figure", "extrapolation", "-o", "a.csv", "-o", "a.svg")
-        rows = [line.split() for line in run.stdout.splitlines() if re.match(r"0\.", line)]
-        self.assertEqual([row[1] for row in rows], ["1", "2", "1", "2"])
-        for first, second in (rows[:2], rows[2:]):
-            self.assertLess(5 * float(second[2]), float(first[2]))
-        with open(self.path("a.csv")) as file:
-            self.assertEqual(len({row["probe"] for row in csv.DictReader(file)}), 5)
-
-        run = self.run_cli("figure", "records-walls", "-o", "b.json", "-o", "b.svg")
-        errors = {tuple(line.split()[::2][:2]): float(line.split()[-2]) for line in run.stdout.splitlines()
-                  if re.match("(white|black|no) wall ", line)}
-        for wall in ("white", "black", "no"):
-            self.assertGreater(errors[wall, "split-sphere"], 2.5 * errors[wall, "occlusion-hessian"])
-        records = self.read_json("b.json")["records"]
-        rows = {wall: [record["position"] for record in records if record["curve"] == wall + ", occlusion-hessian"]
-                for wall in ("black wall", "no wall")}
-        self.assertEqual(len(rows["no wall"]), 10)
-        self.assertEqual(rows["black wall"], rows["no wall"])
-        with open(self.path("b.svg")) as file:
-            text = file.read()
-        for wall in ("white wall", "black wall", "no wall"):
-            self.assertIn(wall + ", split-sphere", text)
-
-        self.run_cli("figure", "records-errors", "-o", "c.csv", "-o", "c.svg")
-        with open(self.path("c.csv")) as file:
-            rows = list(csv.DictReader(file))
-        self.assertEqual(len(rows), 2 * 3 * 6 * 6)
-        at = lambda scene, degree, control, records: float(next(
-            row["relativeRmsError"] for row in rows
-            if [row["scene"], row["degree"], row["errorControl"], row["records"]] == [scene, degree, control, records]))
-        self.assertGreater(at("blocker", "1", "split-sphere", "16"), 30 * at("blocker", "2", "visibility-events", "16"))
-        self.run_cli("figure", "records-errors", "-o", "c.json", status=2)
 
     def test_standard_output_is_for_machines(self):
         for arguments in (["-o", "-"], ["--json"], ["-o", "-", "--json", "--quiet"]):
@@ -390,77 +327,6 @@ class EndToEnd(PictureReader, unittest.TestCase):
             self.run_cli("fetch", name, "-o", "no/a.json", status=5)
             for bad in ("", "xyz", "jobs/", uuid[:-1] + "g", "00000000-0000-4000-8000-000000000000"):
                 self.run_cli("show", bad, status=2)
-
-    def test_the_log_of_records(self):
-        with Daemon(FLATLIGHTD) as daemon:
-            self.environment["FLATLIGHT_SERVER"] = daemon.address
-            name = self.run_cli("submit", "gallery:blocker", "--method", "irradiance-caching", "--quiet").stdout.strip()
-            watch = self.run_cli("watch", name, "--records")
-            self.assertIn("succeeded", watch.stderr)
-            log = [json.loads(line) for line in watch.stdout.splitlines()]
-            result = json.loads(self.run_cli("fetch", name, "--json").stdout)
-            for record in result["records"]:
-                self.assertEqual(len(record.pop("radius")), 2)
-            self.assertEqual(log, result["records"])
-            self.assertEqual(len(log), result["statistics"]["records"])
-            waves = [record["wave"] for record in log]
-            self.assertEqual(waves, sorted(waves))
-            self.assertGreater(waves[-1], 0)
-
-    def test_records_are_reused(self):
-        caching = ["gallery:cornell", "--method", "irradiance-caching"]
-        self.run_cli("render", *caching, "--tolerance", "0.05", "-o", "coarse.json")
-        again = self.run_cli("render", *caching, "--tolerance", "0.05", "--records", "coarse.json", "-o", "again.json")
-        self.run_cli("compare", "coarse.json", "again.json", "--tolerance", "0")
-        coarse, same = (self.read_json(name) for name in ("coarse.json", "again.json"))
-        self.assertEqual(same["records"], coarse["records"])
-        self.assertEqual(same["recordsSeal"], coarse["recordsSeal"])
-        self.assertNotEqual(same["jobKey"], coarse["jobKey"])
-        self.assertEqual(same["statistics"]["reusedRecords"], len(coarse["records"]))
-        self.assertIn(f"({len(coarse['records'])} reused)", again.stdout)
-        self.run_cli("render", *caching, "--tolerance", "0.01", "--records", "coarse.json", "-o", "fine.json")
-        fine = self.read_json("fine.json")
-        self.assertGreater(fine["statistics"]["records"], fine["statistics"]["reusedRecords"])
-
-        text = json.dumps(coarse)
-        coarse["records"][0]["irradiance"][0] *= 1 + 1e-15
-        self.write("changed.json", json.dumps(coarse))
-        del coarse["records"][0]
-        self.write("shorter.json", json.dumps(coarse))
-        self.write("cut.json", text[:-len(text) // 3])
-        self.run_cli("render", "gallery:cornell", "--samples", "1", "-o", "none.json")
-        for records, arguments, message in (
-                ("changed.json", caching, "do not match their checksum"),
-                ("shorter.json", caching, "do not match their checksum"),
-                ("cut.json", caching, "cut.json is not a result in JSON form"),
-                ("none.json", caching, "holds no records"),
-                ("gone.json", caching, "gone.json"),
-                ("jobs/7", caching, "a job is named jobs/{uuid}"),
-                ("coarse.json", ["gallery:penumbra", *caching[1:]], "are of another world"),
-                ("coarse.json", [*caching, "--max-bounces", "1"], "max bounces all, and this job has 1"),
-                ("coarse.json", [*caching, "--samples", "32"], "with gather"),
-                ("coarse.json", ["gallery:cornell"], "are for irradiance-caching alone")):
-            error = self.run_cli("render", *arguments, "--records", records, status=2).stderr
-            self.assertIn(message, error)
-            self.assertEqual(error.count("\n"), 1, error)
-
-    def test_records_of_a_job_on_the_server(self):
-        with Daemon(FLATLIGHTD) as daemon:
-            self.environment["FLATLIGHT_SERVER"] = daemon.address
-            caching = ["gallery:blocker", "--method", "irradiance-caching"]
-            name = self.run_cli("submit", *caching, "--quiet").stdout.strip()
-            self.run_cli("watch", name)
-            self.run_cli("render", *caching, "--records", name, "-o", "a.json")
-            self.run_cli("fetch", name, "-o", "b.json")
-            self.run_cli("render", *caching, "--records", "b.json", "-o", "c.json")
-            self.run_cli("render", *caching, "-o", "d.json")
-            a, b, c, d = (self.read_json(f"{name}.json") for name in "abcd")
-            # What the server remembers counts only if it is asked for.
-            self.assertEqual(d["jobKey"], b["jobKey"])
-            self.assertNotIn("reusedRecords", d["statistics"])
-            self.assertEqual(a["jobKey"], c["jobKey"])
-            for result in (a, c, d):
-                self.assertEqual(result["records"], b["records"])
 
     def test_cancel(self):
         with Daemon(FLATLIGHTD) as daemon:
