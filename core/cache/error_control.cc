@@ -12,8 +12,6 @@ constexpr double kDarkest = 0.01;   // Of the mean.
 constexpr double kAbsolute = 0.01;  // Of the sum of a Hessian's terms without their signs.
 constexpr double kFactorial[] = {1, 1, 2, 6, 24};
 
-double Size(const Spectrum& s) { return std::max({std::abs(s[0]), std::abs(s[1]), std::abs(s[2])}); }
-
 // Where there is no light at all nothing is known of how much there could be.
 double Over(double size, double scale) {
   return size == 0 ? 0 : scale > 0 ? size / scale : std::numeric_limits<double>::infinity();
@@ -46,22 +44,24 @@ void SetErrors(ErrorControl control, std::size_t degree, const ErrorScale& scale
     if (!scale.of_mean) record.least = kDarkest * scale.mean;
   }
   record.growth = {};
+  record.goes_on = control == ErrorControl::kVisibilityEvents;
   switch (control) {
     case ErrorControl::kSplitSphere:
-      record.growth[1] = seen.inverse_distance;
+      record.growth[1] = seen.inverse_distance.value_or(0);
       break;
     case ErrorControl::kBoundedSplitSphere:
-      record.growth[1] = std::max({seen.inverse_distance, Over(Size(record.derivative[1]), record.scale),
-                                   scale.extent > 0 ? 1 / scale.extent : 0});
+      record.growth[1] =
+          std::max({seen.inverse_distance.value_or(0), Over(record.derivative[1].MaxSize(), record.scale),
+                    scale.extent > 0 ? 1 / scale.extent : 0});
       break;
     case ErrorControl::kRadiometricHessian:
-      record.growth[2] = 0.5 * Over(Size(seen.radiometric), record.scale);
+      record.growth[2] = 0.5 * Over(seen.radiometric.MaxSize(), record.scale);
       break;
     case ErrorControl::kGeometricHessian:
       record.growth[2] = 0.5 * seen.geometric;
       break;
     case ErrorControl::kOcclusionHessian:
-      record.growth[2] = record.Irradiance() > 0 ? 0.5 * std::max(Over(Size(record.derivative[2]), record.scale),
+      record.growth[2] = record.Irradiance() > 0 ? 0.5 * std::max(Over(record.derivative[2].MaxSize(), record.scale),
                                                                   kAbsolute * 0.5 * seen.turning)
                                                  : 0.5 * seen.geometric;
       break;
@@ -69,7 +69,7 @@ void SetErrors(ErrorControl control, std::size_t degree, const ErrorScale& scale
       // The next two; where those are not known, the last ones that are.
       for (std::size_t k = std::min(degree + 2, record.known - 1), used = 0;
            k >= std::min<std::size_t>(degree + 1, 2) && used < 2; --k, ++used) {
-        record.growth[k] = Over(Size(record.derivative[k]), record.scale) / kFactorial[k];
+        record.growth[k] = Over(record.derivative[k].MaxSize(), record.scale) / kFactorial[k];
       }
       break;
   }

@@ -18,6 +18,9 @@ constexpr std::size_t kFirstRecords = 3;  // Of a track.
 constexpr std::size_t kMostAtOnce = 4;    // Into a gap, for its estimate tells little about what lies far inside.
 constexpr std::ptrdiff_t kBeside = 2;     // Records to each side of a point that are asked.
 
+// So much less than the tolerance records of an overture are placed for (pbrt's priming asks for as much more weight).
+constexpr double kOverture = 1.5;
+
 // The largest distance up to `most` at which the error is at most `error`.
 double RadiusFor(const CacheRecord& record, double error, double most) {
   double high = most;
@@ -49,33 +52,98 @@ std::vector<std::vector<CacheRecord*>> Placement::Sorted(std::vector<CacheRecord
   return sorted;
 }
 
-std::vector<RecordPlace> Placement::First() const {
-  std::vector<std::size_t> counts(points_.size(), kFirstRecords);
+std::vector<RecordPlace> Placement::First(const std::vector<std::uint32_t>& tracks, std::size_t most) const {
+  std::vector<std::size_t> counts(tracks.size(), kFirstRecords);
   if (options_.most_records) {
     // A third of them, and no track without.
-    const std::size_t first = std::max((*options_.most_records + 2) / 3, points_.size());
+    const std::size_t first = std::max((most + 2) / 3, tracks.size());
     double all = 0;
-    for (std::size_t t = 0; t < points_.size(); ++t) all += Extent(t);
-    std::size_t left = first - points_.size();
-    for (std::size_t t = 0; t < points_.size(); ++t) {
-      const double share = all > 0 ? Extent(t) / all * static_cast<double>(first - points_.size()) : 0;
+    for (const std::uint32_t t : tracks) all += Extent(t);
+    std::size_t left = first - tracks.size();
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      const double share = all > 0 ? Extent(tracks[i]) / all * static_cast<double>(first - tracks.size()) : 0;
       const auto more = std::min(left, static_cast<std::size_t>(std::floor(share + 0.5)));
-      counts[t] = 1 + more, left -= more;
+      counts[i] = 1 + more, left -= more;
     }
+    // As many as there are stretches between events, if that is not too many.
+    std::vector<std::size_t> enough = counts;
+    std::size_t sum = 0;
+    for (std::size_t i = 0; i < tracks.size(); ++i) sum += enough[i] = std::max(counts[i], Stretches(tracks[i]).size());
+    if (3 * sum <= 2 * most) counts = enough;
   }
   std::vector<RecordPlace> places;
-  for (std::size_t t = 0; t < points_.size(); ++t) {
-    Gap gap;
-    gap.points = points_[t], gap.low = points_[t].front(), gap.high = points_[t].back();
-    for (const double at : gap.Places(counts[t], 1)) places.push_back({static_cast<std::uint32_t>(t), at});
-  }
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    for (const double at : FirstOf(tracks[i], counts[i])) places.push_back({tracks[i], at});
   return places;
 }
 
+std::vector<Gap> Placement::Stretches(std::uint32_t track) const {
+  const std::span<const double> points = points_[track];
+  std::vector<Gap> stretches;
+  std::size_t first = 0;
+  const auto add = [&](std::size_t end) {
+    if (end == first) return;
+    Gap& gap = stretches.emplace_back();
+    gap.points = points.subspan(first, end - first);
+    gap.low = gap.points.front(), gap.high = gap.points.back();
+    first = end;
+  };
+  if (track < events_.size()) {
+    for (const VisibilityEvent& event : events_[track])
+      add(static_cast<std::size_t>(std::lower_bound(points.begin(), points.end(), event.at) - points.begin()));
+  }
+  add(points.size());
+  return stretches;
+}
+
+std::vector<double> Placement::FirstOf(std::uint32_t track, std::size_t count) const {
+  std::vector<Gap> stretches = Stretches(track);
+  if (!options_.most_records || stretches.size() > count) {
+    Gap all;
+    all.points = points_[track], all.low = all.points.front(), all.high = all.points.back();
+    return all.Places(count, 1);
+  }
+  std::vector<std::size_t> counts(stretches.size(), 1);
+  for (std::size_t left = count - stretches.size(); left > 0; --left) {
+    const auto each = [&](std::size_t i) {
+      return (stretches[i].high - stretches[i].low) / static_cast<double>(counts[i]);
+    };
+    std::size_t widest = 0;
+    for (std::size_t i = 1; i < stretches.size(); ++i)
+      if (each(i) > each(widest)) widest = i;
+    ++counts[widest];
+  }
+  std::vector<double> places;
+  for (std::size_t i = 0; i < stretches.size(); ++i)
+    for (const double at : stretches[i].Places(counts[i], 1)) places.push_back(at);
+  return places;
+}
+
+void Placement::ClampNeighbours(const std::vector<CacheRecord*>& track, double extent) const {
+  std::vector<double> radius;
+  for (const CacheRecord* record : track) radius.push_back(RadiusFor(*record, options_.tolerance, extent));
+  std::vector<double> clamped = radius;
+  for (std::size_t i = 1; i < track.size(); ++i)
+    clamped[i] = std::min(clamped[i], clamped[i - 1] + (track[i]->at - track[i - 1]->at));
+  for (std::size_t i = track.size(); i-- > 1;)
+    clamped[i - 1] = std::min(clamped[i - 1], clamped[i] + (track[i]->at - track[i - 1]->at));
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    if (!(clamped[i] > 0 && clamped[i] < radius[i])) continue;
+    // The same error at so many times smaller a distance.
+    double stretch = 1;
+    for (double& growth : track[i]->growth) growth *= stretch, stretch *= radius[i] / clamped[i];
+  }
+}
+
 std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) const {
-  if (records.empty()) return First();
   const std::size_t power = GrowthPower(options_.control, options_.degree);
   const auto sorted = Sorted(records);
+  const std::size_t budget = options_.most_records.value_or(0), left = budget - std::min(budget, records.size());
+  std::vector<std::uint32_t> bare;
+  for (std::size_t t = 0; t < points_.size(); ++t)
+    if (sorted[t].empty()) bare.push_back(static_cast<std::uint32_t>(t));
+  if (!bare.empty()) return First(bare, left);
+  const double tolerance = options_.tolerance / (options_.overture ? kOverture : 1);
   struct Candidate {
     std::uint32_t track;
     Gap gap;
@@ -89,13 +157,13 @@ std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) cons
     for (const CacheRecord* record : sorted[t])
       scale.mean += record->Irradiance() / static_cast<double>(sorted[t].size());
     for (CacheRecord* record : sorted[t]) SetErrors(options_.control, options_.degree, scale, *record);
+    if (options_.clamp_neighbours) ClampNeighbours(sorted[t], scale.extent);
     const std::vector<const CacheRecord*> known(sorted[t].begin(), sorted[t].end());
     for (const Gap& gap : FindGaps(points_[t], known)) candidates.push_back({static_cast<std::uint32_t>(t), gap});
   }
   if (options_.most_records) {
     // All that is left is planned for where the error is largest; if there is a good estimate of it, where it takes
     // most off the sum of squares.
-    const std::size_t left = *options_.most_records - std::min(*options_.most_records, records.size());
     const auto gain = [&](const Candidate& c) {
       const double now = std::min(c.gap.ErrorWith(c.count, power), 1e100);
       if (options_.control != ErrorControl::kVisibilityEvents) return now;
@@ -121,7 +189,7 @@ std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) cons
     }
   } else {
     for (Candidate& c : candidates)
-      while (c.count < kMostAtOnce && c.gap.ErrorWith(c.count, power) > options_.tolerance) ++c.count;
+      while (c.count < kMostAtOnce && c.gap.ErrorWith(c.count, power) > tolerance) ++c.count;
   }
   std::vector<RecordPlace> places;
   for (const Candidate& c : candidates) {

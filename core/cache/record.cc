@@ -11,6 +11,9 @@
 namespace flatlight {
 namespace {
 
+// At which x log x has the right rest at its end, x = 0.
+constexpr double kMostRatio = 0.75;
+
 using Event = std::span<const VisibilityEvent>::iterator;
 
 // The first one to the right of a place.
@@ -19,11 +22,9 @@ Event Beyond(std::span<const VisibilityEvent> events, double place) {
                           [](double at, const VisibilityEvent& event) { return at < event.at; });
 }
 
-double Size(const Spectrum& s) { return std::max({std::abs(s[0]), std::abs(s[1]), std::abs(s[2])}); }
-
 // By how much what jumped moves irradiance at a distance from there.
 double JumpAt(const VisibilityEvent& event, double distance) {
-  return Size(event.jump[0]) + distance * (Size(event.jump[1]) + 0.5 * distance * Size(event.jump[2]));
+  return event.jump[0].MaxSize() + distance * (event.jump[1].MaxSize() + 0.5 * distance * event.jump[2].MaxSize());
 }
 
 }  // namespace
@@ -41,7 +42,16 @@ double CacheRecord::EventToRight() const {
 double CacheRecord::SmoothError(double distance) const {
   double error = 0;
   for (std::size_t k = kRecordOrders; k-- > 0;) error = error * distance + growth[k];
-  return error;
+  if (!goes_on || degree + 2 >= kRecordOrders || growth[degree + 2] == 0) return error;
+  // Beside a corner where light is reflected irradiance goes like x log x, whose terms in d/x have the factors
+  // 1/(k (k - 1)): from the ratio of two the ratio far along the series follows, d/x.
+  const double before = growth[degree + 1];
+  double last = growth[degree + 2];
+  for (std::size_t k = 0; k < degree + 2; ++k) last *= distance;
+  const double factor = static_cast<double>(degree + 2) / static_cast<double>(std::max<std::size_t>(degree, 1));
+  const double apart = factor * growth[degree + 2] * distance;
+  const double ratio = apart < kMostRatio * before ? apart / before : kMostRatio;
+  return error + last * ratio / (1 - ratio);
 }
 
 double CacheRecord::ErrorAt(double place) const {

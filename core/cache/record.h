@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "core/scene/spectrum.h"
@@ -23,8 +24,9 @@ struct VisibilityEvent {
 
 // What a record's place sees, for estimates of how fast irradiance changes. Normalised units.
 struct Surroundings {
-  double inverse_distance = 0;  // Its mean over the hemicircle, weighed by the cosine.
-  Spectrum radiometric;         // E'' by the motion of what is seen alone, as if nothing could be covered (J12).
+  // Its mean over the hemicircle, weighed by the cosine; absent unless error control asks for it.
+  std::optional<double> inverse_distance;
+  Spectrum radiometric;  // E'' by the motion of what is seen alone, as if nothing could be covered (J12).
   // The same for radiance 1/2 everywhere, which makes irradiance 1: what each piece of a curve adds to it, without
   // signs, for with them it vanishes in closed rooms (THEORY 17 A13).
   double geometric = 0;
@@ -46,8 +48,10 @@ struct CacheRecord {
   // The events of its track, in order; none if error control does not ask for them. They must outlive this.
   std::span<const VisibilityEvent> events;
   // Set by SetErrors: the estimated error of extrapolation over a distance d is the sum of growth[k] d^k, beyond an
-  // event with what jumps there, relative to `scale`.
+  // event with what jumps there, relative to `scale`. If `goes_on`, the last two are terms of a series and the rest of
+  // it is estimated from them.
   std::array<double, kRecordOrders> growth{};
+  bool goes_on = false;
   double scale = 0;
   // If above 0, the error that counts at a place is relative to what is extrapolated there with `degree`, at least
   // this.

@@ -73,6 +73,15 @@ double Bezier::CurvatureChange(double u) const {
   return (Cross(first, Third()) - 3 * (Cross(first, second) / squared) * Dot(first, second)) / squared / squared;
 }
 
+double Bezier::CurvatureChangeChange(double u) const {
+  const Vector2 first = First(u), second = Second(u), third = Third();
+  const double squared = LengthSquared(first), turn = Cross(first, second), turn_first = Cross(first, third);
+  const double stretch = Dot(first, second) / squared;
+  const double stretch_first = (LengthSquared(second) + Dot(first, third)) / squared;
+  return (Cross(second, third) - 7 * turn_first * stretch - 3 * turn * stretch_first + 18 * turn * stretch * stretch) /
+         squared / squared / std::sqrt(squared);
+}
+
 double Bezier::Length(double from, double to) const {
   constexpr double kNodes[] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244, 0.8650633666889845,
                                0.9739065285171717};

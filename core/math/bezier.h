@@ -34,6 +34,7 @@ struct Bezier {
   // still.
   double Curvature(double u) const;
   double CurvatureChange(double u) const;
+  double CurvatureChangeChange(double u) const;
 
   // Arc length between two parameters, from <= to, by Gauss's rule with 10 points: for stretches that turn little.
   double Length(double from, double to) const;

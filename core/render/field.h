@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_CORE_RENDER_FIELD_H_
 #define FLATLIGHT_CORE_RENDER_FIELD_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -34,9 +35,19 @@ struct RecordField {
   Vector2 normal;
   std::string curve;  // Its name; empty for free points.
   Side side = Side::kFront;
-  std::vector<double> irradiance;            // W/m
-  std::vector<double> gradient;              // W/m^2
-  std::vector<double> hessian;               // W/m^3
+  std::vector<double> irradiance;    // W/m
+  std::vector<double> gradient;      // W/m^2
+  std::vector<double> hessian;       // W/m^3
+  std::vector<double> third;         // Derivatives: W/m^4,
+  std::vector<double> fourth;        // W/m^5
+  std::optional<double> arc_length;  // Along the curve; absent for free points. m
+  double noise = 0;                  // Of irradiance. W/m
+  double unknown_jump = 0;           // W/m^2
+  // What it sees, see core/cache/record.h.
+  std::optional<double> inverse_distance;    // 1/m
+  std::vector<double> radiometric;           // W/m^3
+  double geometric = 0;                      // 1/m^2
+  double turning = 0;                        // 1/m^2
   double left_radius = 0, right_radius = 0;  // m, against and along the track.
   std::uint32_t wave = 0;
 };
@@ -48,12 +59,14 @@ struct Field {
   double rays = 0;
   // In the order in which they were made: a newer field has more of them, and may have other radii.
   std::vector<RecordField> records;
+  std::size_t reused_records = 0;  // The first so many are of an earlier job.
 };
 
 struct RenderProgress {
   double fraction = 0;  // In [0, 1].
   double samples = 0;   // Paths of the point that has most.
   double rays = 0;
+  double records = 0;  // Of irradiance caching, in whole waves.
   std::optional<double> remaining_seconds;
   // Largest over the points: standard error or bound / max(irradiance, 1 % of the probe's mean).
   std::optional<double> relative_error;

@@ -8,6 +8,7 @@
 #include "core/cache/interpolation.h"
 #include "core/plane/reference/panel_mesh.h"
 #include "core/render/light_paths.h"
+#include "core/render/record_exchange.h"
 #include "core/render/skips.h"
 #include "core/render/world_units.h"
 #include "core/sampling/hash.h"
@@ -19,6 +20,8 @@ namespace {
 constexpr std::size_t kRecordsPerThread = 4;
 // What panels may be off by, as a share of the tolerance, at so many points of each probe.
 constexpr double kPanelError = 0.05;
+// What records of an earlier job may be off by, as a share of the tolerance: that job's may have been larger.
+constexpr double kKnownNoise = 0.5;
 constexpr std::size_t kPointsOfPanels = 8;
 constexpr std::size_t kStretch = 32;  // Of points that are searched for events.
 
@@ -30,6 +33,8 @@ IrradianceCachingRendering::IrradianceCachingRendering(std::shared_ptr<const Sce
   const Settings& settings = plan.settings;
   placement_options_.control = *settings.error_control;
   placement_options_.degree = *settings.extrapolation;
+  placement_options_.clamp_neighbours = settings.neighbour_clamping.value_or(false);
+  placement_options_.overture = settings.overture.value_or(false);
   if (settings.tolerance) placement_options_.tolerance = *settings.tolerance;
   if (plan.Takes(skip::kEmission)) {
     done_ = true;
@@ -60,12 +65,45 @@ IrradianceCachingRendering::IrradianceCachingRendering(std::shared_ptr<const Sce
   if (settings.max_records) {
     placement_options_.most_records = std::max(std::size_t{*settings.max_records}, tracks_.tracks.size());
   }
-  if (!panels_) StartRecords();
+  known_records_ = plan.known_records;
+  if (!panels_) {
+    Prepare();
+  } else if (known_records_ && maker_options_.control != ErrorControl::kVisibilityEvents) {
+    // What is known already may be enough, without panels.
+    Prepare();
+    BeginWaves();
+    if (!done_) placement_.reset(), records_.clear(), begun_ = false;
+  }
 }
 
-void IrradianceCachingRendering::StartRecords() {
-  placement_.emplace(tracks_.points, placement_options_);
+bool IrradianceCachingRendering::IsGoodEnough(const CacheRecord& record) const {
+  const bool by_distance = maker_options_.control == ErrorControl::kSplitSphere ||
+                           maker_options_.control == ErrorControl::kBoundedSplitSphere;
+  if (record.known <= placement_options_.degree || (by_distance && !record.surroundings.inverse_distance)) return false;
+  // What rays bring is as good as their number, which is the same.
+  return !panels_ || placement_options_.most_records ||
+         record.noise <= kKnownNoise * placement_options_.tolerance * record.Irradiance();
+}
+
+void IrradianceCachingRendering::BeginWaves() {
+  if (known_records_) {
+    for (const RecordField& known : *known_records_) {
+      std::optional<CacheRecord> record = FromWorld(known, tracks_, *scene_);
+      if (!record || !IsGoodEnough(*record)) continue;
+      record->events = events_[record->track];
+      waves_ = std::max(waves_, record->wave + 1);
+      records_.push_back(*record);
+    }
+  }
+  reused_ = records_.size();
+  placement_->SetEvents({events_.begin(), events_.end()});
   wave_ = placement_->Next(records_);
+  done_ = wave_.empty();
+  begun_ = true;
+}
+
+void IrradianceCachingRendering::Prepare() {
+  placement_.emplace(tracks_.points, placement_options_);
   events_.resize(tracks_.tracks.size());
   if (maker_options_.control != ErrorControl::kVisibilityEvents) return;
   for (std::size_t t = 0; t < tracks_.points.size(); ++t) {
@@ -93,9 +131,11 @@ void IrradianceCachingRendering::Advance(Executor& executor, const Cancellation&
       if (panels_->state() == ReferenceSolver::State::kWorks) return;
       maker_options_.reflected = ReflectedLight{&panels_->mesh(), &panels_->light()};
       maker_options_.reflected_error = panels_->relative_error();
-      StartRecords();
+      Prepare();
     } else if (searched_ < stretches_.size()) {
       FindEvents(executor, threads, cancellation);
+    } else if (!begun_) {
+      BeginWaves();
     } else {
       MakeRecords(executor, threads, cancellation);
     }
@@ -150,6 +190,7 @@ void IrradianceCachingRendering::MakeRecords(Executor& executor, int threads, co
 RenderProgress IrradianceCachingRendering::Progress() const {
   RenderProgress progress;
   progress.rays = rays_;
+  progress.records = static_cast<double>(records_.size());
   progress.samples = records_.empty() ? 0 : maker_options_.rays;
   if (done_) {
     progress.fraction = 1;
@@ -159,31 +200,6 @@ RenderProgress IrradianceCachingRendering::Progress() const {
     progress.fraction = std::min(progress.fraction, 0.99);
   }
   return progress;
-}
-
-void IrradianceCachingRendering::AppendRecords(const std::vector<CacheRecord>& records, Field& field) const {
-  const WorldUnits units(scene_->frame());
-  const double length = scene_->frame().scale;
-  const auto channels = static_cast<std::size_t>(scene_->channels());
-  const auto append = [&](const Spectrum& value, double unit, std::vector<double>& out) {
-    for (std::size_t c = 0; c < channels; ++c) out.push_back(unit * value.value[c]);
-  };
-  for (const CacheRecord& record : records) {
-    RecordField& out = field.records.emplace_back();
-    const Track& track = tracks_.tracks[record.track];
-    const Receiver receiver = track.At(record.at);
-    const Point2 world = scene_->ToWorld(receiver.position);
-    out.position = world;
-    out.normal = receiver.normal;
-    if (track.curve() != CurveId::kNone) out.curve = scene_->curve(track.curve()).name;
-    out.side = track.side();
-    out.wave = record.wave;
-    out.left_radius = length * record.left_radius;
-    out.right_radius = length * record.right_radius;
-    append(record.derivative[0], units.irradiance, out.irradiance);
-    if (record.known > 1) append(record.derivative[1], units.gradient, out.gradient);
-    if (record.known > 2) append(record.derivative[2], units.hessian, out.hessian);
-  }
 }
 
 std::shared_ptr<const Field> IrradianceCachingRendering::Snapshot() const {
@@ -219,7 +235,9 @@ std::shared_ptr<const Field> IrradianceCachingRendering::Snapshot() const {
       }
     }
   }
-  AppendRecords(records, *field);
+  for (const CacheRecord& record : records)
+    field->records.push_back(ToWorld(record, tracks_.tracks[record.track], *scene_));
+  field->reused_records = reused_;
   return field;
 }
 

@@ -40,11 +40,14 @@ class IrradianceCachingRendering final : public Rendering {
   std::shared_ptr<const Field> Snapshot() const override;
 
  private:
-  void StartRecords();
+  // Whether records of this gather may be off by so much.
+  bool IsGoodEnough(const CacheRecord& record) const;
+  void Prepare();
+  // With what is of use of an earlier job's records; events are known.
+  void BeginWaves();
   void FindEvents(Executor& executor, int threads, const Cancellation& cancellation);
   void MakeRecords(Executor& executor, int threads, const Cancellation& cancellation);
   std::unique_ptr<RecordMaker> TakeMaker();
-  void AppendRecords(const std::vector<CacheRecord>& records, Field& field) const;
 
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const RayCaster> caster_;
@@ -55,7 +58,9 @@ class IrradianceCachingRendering final : public Rendering {
   std::optional<ReferenceSolver> panels_;  // If panels tell what is reflected.
   std::vector<Chart> charts_;
   Tracks tracks_;
-  std::optional<Placement> placement_;  // Unless all is dark.
+  std::shared_ptr<const std::vector<RecordField>> known_records_;  // Of an earlier job; null if there are none.
+  std::size_t reused_ = 0;                                         // Of these: the first of `records_`.
+  std::optional<Placement> placement_;                             // Unless all is dark.
   // Stretches of tracks that are yet to be searched for events begin at (track, index of a point).
   std::vector<std::pair<std::uint32_t, std::size_t>> stretches_;
   std::size_t searched_ = 0;
@@ -65,6 +70,7 @@ class IrradianceCachingRendering final : public Rendering {
   std::vector<CacheRecord> made_;                     // and its records so far.
   std::uint32_t waves_ = 0;
   double rays_ = 0;
+  bool begun_ = false;  // There was a first wave.
   bool done_ = false;
   IdlePool<RecordMaker> makers_;
 };

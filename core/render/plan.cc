@@ -119,6 +119,8 @@ void CheckCaching(const Scene& scene, const Settings& settings, Diagnostics& dia
     if (settings.tolerance) diagnostics.Add("settings.tolerance", reason);
     if (settings.max_records) diagnostics.Add("settings.maxRecords", reason);
     if (settings.gather) diagnostics.Add("settings.gather", reason);
+    if (settings.neighbour_clamping) diagnostics.Add("settings.neighbourClamping", reason);
+    if (settings.overture) diagnostics.Add("settings.overture", reason);
     return;
   }
   if (settings.extrapolation > 2u)
@@ -129,6 +131,9 @@ void CheckCaching(const Scene& scene, const Settings& settings, Diagnostics& dia
   if (settings.tolerance && settings.max_records) {
     diagnostics.Add("settings.maxRecords",
                     "is given together with a tolerance: one decides where records go, leave the other out");
+  }
+  if (settings.overture && settings.max_records) {
+    diagnostics.Add("settings.overture", "places records for less than the tolerance, and max records leaves that out");
   }
   if (settings.gather == Gather::kReference && settings.samples) {
     diagnostics.Add("settings.samples",

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/render/field.h"
 #include "core/render/settings.h"
 #include "core/scene/diagnostic.h"
 #include "core/scene/scene.h"
@@ -40,6 +42,8 @@ struct Plan {
   std::vector<PlanPass> passes;
   // Exact light looks for what is seen in a triangulation of the plane, where there can be one; else in the tree.
   bool triangles = false;
+  // Of an earlier job, for irradiance caching to begin with; null if there are none. Not MakePlan's to set.
+  std::shared_ptr<const std::vector<RecordField>> known_records;
   std::string summary;
 
   bool Takes(const std::string& skip) const { return Decided(skip, SkipDecision::kTaken); }

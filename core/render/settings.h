@@ -37,6 +37,8 @@ struct Settings {
   std::optional<double> tolerance;             // Relative error.
   std::optional<std::uint32_t> max_records;
   std::optional<Gather> gather;
+  std::optional<bool> neighbour_clamping;
+  std::optional<bool> overture;
   std::vector<std::string> no_skip;
 };
 

@@ -95,7 +95,9 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
   const bool caching = settings.method == Method::kIrradianceCaching;
   const bool branching = settings.method == Method::kRayTracing || caching;
   decisions.Add(skip::kColour, traits.grey && !branching, "all spectra are grey: one channel is computed",
-                branching ? "branching rays carry all channels at once" : "some spectra are coloured");
+                caching     ? "records hold all channels at once"
+                : branching ? "branching rays carry all channels at once"
+                            : "some spectra are coloured");
   if (settings.method == Method::kReference) {
     const std::string reason = "light goes from panel to panel: it has no paths and no samples";
     decisions.Add(skip::kVisibility, false, "", "what each panel sees is found with what may hide it");
@@ -120,10 +122,18 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
   const bool direct = DirectLightOnly(scene, settings);
   const LightWays ways(scene, direct);
   if (branching) {
-    const std::string reason = "branching rays find what they meet: no shadow tests, no emitters chosen";
+    const bool rays = !caching || settings.gather == Gather::kRayTracing;
+    const std::string reason = rays ? "branching rays find what they meet: no shadow tests, no emitters chosen"
+                                    : "records find all that they see, in the order of its directions";
     decisions.Add(skip::kVisibility, false, "", reason);
     AddBounces(scene, settings, ways, decisions);
-    AddBlackPaths(scene, direct, decisions);
+    if (rays) {
+      AddBlackPaths(scene, direct, decisions);
+    } else {
+      decisions.Add(
+          skip::kBlackPaths, false, "",
+          direct ? "no path goes on from where it arrives" : "light goes from panel to panel: it has no paths");
+    }
     decisions.Add(skip::kUnseenEmitters, false, "", reason);
     decisions.Add(
         skip::kConvergedPoints, false, "",

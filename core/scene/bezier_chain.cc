@@ -229,6 +229,7 @@ void PlaceOnBezier(const Element& element, const Bezier& bezier, double u, doubl
   receiver.normal = sign * Left(receiver.tangent);
   receiver.curvature = sign * bezier.Curvature(u);
   receiver.curvature_change = sign * bezier.CurvatureChange(u);
+  receiver.curvature_second = sign * bezier.CurvatureChangeChange(u);
 }
 
 double NearestOnBezier(const Bezier& bezier, Point2 point, double low, double high, double guess) {

@@ -87,7 +87,8 @@ struct Receiver {
   Vector2 normal;                        // Unit, toward the side that receives; of a pixel along its middle direction.
   Vector2 tangent;                       // Unit, along increasing arc length; (normal.y, -normal.x) for a free point.
   double curvature = 0;                  // kappa: d(tangent)/d(arc length) = kappa * normal.
-  double curvature_change = 0;           // d(kappa)/d(arc length).
+  double curvature_change = 0;           // d(kappa)/d(arc length),
+  double curvature_second = 0;           // and its derivative.
   ElementId element = ElementId::kNone;  // The piece it lies on.
   double arc_length = 0;
   double displaced = 0;  // How far from where the author put it: see kLiftTouches.

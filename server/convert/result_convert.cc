@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/math/check.h"
+#include "server/convert/record_convert.h"
 
 namespace flatlight {
 namespace {
@@ -96,21 +97,9 @@ v1::RenderResult ResultToProto(const SceneOutline& scene, const Field& field) {
     unsampled += static_cast<double>(std::count(probe.samples.begin(), probe.samples.end(), 0.0));
   if (unsampled > 0) result.mutable_statistics()->set_unsampled_points(unsampled);
   if (!field.records.empty()) result.mutable_statistics()->set_records(static_cast<double>(field.records.size()));
-  for (const RecordField& record : field.records) {
-    v1::CacheRecord& out = *result.add_records();
-    out.add_position(record.position.x), out.add_position(record.position.y);
-    out.add_normal(record.normal.x), out.add_normal(record.normal.y);
-    out.set_curve(record.curve);
-    if (!record.curve.empty()) {
-      out.set_side(record.side == Side::kFront ? v1::CacheRecord::FRONT : v1::CacheRecord::BACK);
-    }
-    out.mutable_irradiance()->Add(record.irradiance.begin(), record.irradiance.end());
-    out.mutable_gradient()->Add(record.gradient.begin(), record.gradient.end());
-    out.mutable_hessian()->Add(record.hessian.begin(), record.hessian.end());
-    out.add_radius(record.left_radius), out.add_radius(record.right_radius);
-    out.set_bounce(0);
-    out.set_wave(record.wave);
-  }
+  FillRecords(field.records, *result.mutable_records());
+  if (field.reused_records > 0)
+    result.mutable_statistics()->set_reused_records(static_cast<double>(field.reused_records));
   result.mutable_statistics()->set_rays(field.rays);
   if (field.error_bound) result.mutable_statistics()->set_error_bound(*field.error_bound);
   return result;

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/convert/record_convert.h"
+
 namespace flatlight {
 namespace {
 
@@ -72,19 +74,8 @@ Field FieldOf(const v1::RenderResult& result) {
     probe.rotation_gradient_error = ValuesOf(source.rotation_gradient_error());
     probe.samples = ValuesOf(source.samples());
   }
-  for (const v1::CacheRecord& source : result.records()) {
-    RecordField& record = field.records.emplace_back();
-    record.position = PointAt(source.position(), 0);
-    record.normal = {source.normal(0), source.normal(1)};
-    record.curve = source.curve();
-    record.side = source.side() == v1::CacheRecord::BACK ? Side::kBack : Side::kFront;
-    record.irradiance = ValuesOf(source.irradiance());
-    record.gradient = ValuesOf(source.gradient());
-    record.hessian = ValuesOf(source.hessian());
-    record.left_radius = source.radius(0);
-    record.right_radius = source.radius(1);
-    record.wave = source.wave();
-  }
+  for (const v1::CacheRecord& record : result.records()) field.records.push_back(RecordFromProto(record));
+  field.reused_records = static_cast<std::size_t>(result.statistics().reused_records());
   field.rays = result.statistics().rays();
   if (result.statistics().has_error_bound()) field.error_bound = result.statistics().error_bound();
   return field;

@@ -116,6 +116,8 @@ Settings SettingsFromProto(const v1::Settings& proto, Diagnostics& diagnostics) 
   settings.error_control = FromProto(proto.error_control());
   if (proto.has_extrapolation()) settings.extrapolation = proto.extrapolation();
   if (proto.has_tolerance()) settings.tolerance = proto.tolerance();
+  if (proto.has_neighbour_clamping()) settings.neighbour_clamping = proto.neighbour_clamping();
+  if (proto.has_overture()) settings.overture = proto.overture();
   if (proto.has_max_records()) settings.max_records = proto.max_records();
   if (proto.has_samples()) settings.samples = proto.samples();
   if (proto.has_max_bounces()) settings.max_bounces = proto.max_bounces();
@@ -145,6 +147,8 @@ v1::Settings SettingsToProto(const Settings& settings) {
   if (settings.gather) proto.set_gather(ToProto(*settings.gather));
   if (settings.extrapolation) proto.set_extrapolation(*settings.extrapolation);
   if (settings.tolerance) proto.set_tolerance(*settings.tolerance);
+  if (settings.neighbour_clamping) proto.set_neighbour_clamping(*settings.neighbour_clamping);
+  if (settings.overture) proto.set_overture(*settings.overture);
   if (settings.max_records) proto.set_max_records(*settings.max_records);
   for (const std::string& name : settings.no_skip) proto.add_no_skip(name);
   return proto;

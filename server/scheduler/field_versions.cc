@@ -35,6 +35,9 @@ bool EqualValues(const ProbeField& a, const ProbeField& b, std::size_t points, s
 FieldVersions StampVersions(const SceneOutline& scene, const Field* before, const FieldVersions& before_versions,
                             const Field& after, std::uint64_t sequence) {
   FieldVersions versions;
+  versions.log = before_versions.log;
+  if (after.records.size() > (before == nullptr ? 0 : before->records.size()))
+    versions.log.push_back({sequence, after.records.size()});
   for (std::size_t probe = 0; probe < scene.probes.size(); ++probe) {
     const std::size_t points = scene.probes[probe].points();
     std::vector<std::uint64_t>& changed = versions.changed.emplace_back();

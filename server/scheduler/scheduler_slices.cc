@@ -217,7 +217,8 @@ void Scheduler::RunSlice(JobRun& run) {
     }
     done = rendering.done();
     next.progress = rendering.Progress();
-    const bool has_picture = done || next.progress.fraction > 0 || next.progress.samples > 0;
+    const bool has_picture =
+        done || next.progress.fraction > 0 || next.progress.samples > 0 || next.progress.records > 0;
     const Clock::Time now = clock_.Now();
     const Clock::Duration interval = std::max(options_.publish_interval, kSnapshotShare * run.snapshot_cost);
     publish = done || run.cancellation.cancelled() || (first && has_picture) || now - run.published >= interval;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "server/convert/record_convert.h"
 #include "server/convert/result_convert.h"
 #include "server/convert/settings_convert.h"
 #include "server/service/status_convert.h"
@@ -47,6 +48,7 @@ void FillProgress(const JobState& state, v1::Progress& out) {
   out.set_rays(progress.rays);
   out.set_elapsed_seconds(state.elapsed_seconds);
   if (progress.remaining_seconds && !HasEnded(state.phase)) out.set_remaining_seconds(*progress.remaining_seconds);
+  out.set_records(progress.records);
   if (progress.relative_error) out.set_relative_error(*progress.relative_error);
 }
 
@@ -84,6 +86,7 @@ std::string JobKey(const JobSpec& spec, const std::string& build) {
   hash.Add(spec.scene->probe_hash);
   hash.Add(settings.SerializeAsString());
   hash.Add(build);
+  if (spec.records_checksum) hash.Add(*spec.records_checksum);
   return hash.Finish();
 }
 
@@ -128,6 +131,8 @@ absl::StatusOr<v1::RenderResult> MakeResult(const JobRecord& job, const std::str
   result.set_build(build);
   *result.mutable_settings() = SettingsToProto(spec.settings);
   *result.mutable_plan() = PlanToProto(spec.plan);
+  if (!result.records().empty())
+    *result.mutable_records_seal() = SealOf(spec.scene->world_hash, spec.plan.settings, result.records());
   if (state.end_reason) result.set_end_reason(EndReasonToProto(*state.end_reason));
   result.mutable_statistics()->set_wall_seconds(state.elapsed_seconds);
   result.mutable_statistics()->set_cpu_seconds(state.cpu_seconds);

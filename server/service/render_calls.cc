@@ -12,6 +12,7 @@
 #include "server/convert/scene_reader.h"
 #include "server/convert/settings_convert.h"
 #include "server/service/job_convert.h"
+#include "server/service/known_records.h"
 #include "server/service/page.h"
 #include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
@@ -76,11 +77,27 @@ absl::StatusOr<JobRun::Restored> MakeJob(Backend& backend, const v1::CreateJobRe
                                          const Proceed& proceed) {
   auto planned = MakePlannedScene(backend, request.scene(), request.settings(), proceed);
   if (!planned.ok()) return planned.status();
+  if (request.has_records()) {
+    auto taken = TakeRecords(request.records(), *planned->scene, planned->plan);
+    if (!taken.ok()) return taken.status();
+    planned->plan.known_records = std::move(taken->records);
+    spec.records_checksum = std::move(taken->checksum);
+  }
   spec.scene = std::make_shared<SceneOutline>(*planned->scene);
   spec.settings = std::move(planned->settings);
   spec.plan = std::move(planned->plan);
   spec.job_key = JobKey(spec, backend.version);
   return JobRun::Restored{std::make_shared<JobSpec>(std::move(spec)), std::move(planned->scene), {}};
+}
+
+// With the records of the job that it names, if any: that job may be deleted before this one is restored.
+absl::StatusOr<v1::CreateJobRequest> WithRecords(const v1::CreateJobRequest& request, JobStore& jobs) {
+  v1::CreateJobRequest whole = request;
+  if (request.records().job().empty()) return whole;
+  auto records = RecordsOfJob(request.records(), jobs);
+  if (!records.ok()) return records.status();
+  *whole.mutable_records() = *std::move(records);
+  return whole;
 }
 
 // What RestoreJob makes the same job from, whatever becomes of uploaded scenes.
@@ -125,15 +142,17 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
       return WholeJob(*job);
     }
   }
+  const auto whole = WithRecords(request, backend.jobs);
+  if (!whole.ok()) return whole.status();
   JobSpec spec;
   spec.id = JobId::Random();
   spec.owner = caller.name;
   spec.job_class = *job_class;
   spec.create_time = std::chrono::system_clock::now();
-  auto made = MakeJob(backend, request, std::move(spec), proceed);
+  auto made = MakeJob(backend, *whole, std::move(spec), proceed);
   if (!made.ok()) return made.status();
   absl::StatusOr<Submission> submission = Submission{};
-  if (backend.jobs.durable()) submission = MakeSubmission(backend, request);
+  if (backend.jobs.durable()) submission = MakeSubmission(backend, *whole);
   if (!submission.ok()) return submission.status();
   const auto job = backend.scheduler.Submit(std::move(made->spec), std::move(made->scene), *submission, *key);
   if (!job.ok()) return job.status();

@@ -33,7 +33,7 @@ class WatchUpdate {
     return state.sequence == job_.state->sequence && Canonical(state, known) == known_;
   }
   const JobState& state() const { return *job_.state; }
-  std::size_t size() const { return cuts_.size(); }  // At least 1.
+  std::size_t size() const { return contents_.size(); }  // At least 1.
   grpc::ByteBuffer Message(std::size_t index);
   // Unserialised, for tests and for Message.
   v1::WatchJobResponse Build(std::size_t index) const;
@@ -49,12 +49,28 @@ class WatchUpdate {
     std::size_t count = 0;
   };
 
+  // Records [first, first + count) of the log, or their radii alone.
+  struct RecordCut {
+    std::size_t first = 0;
+    std::size_t count = 0;
+    bool radii_alone = false;
+  };
+  struct Content {
+    std::vector<Cut> points;
+    std::vector<RecordCut> records;
+  };
+
   void PlanMessages();
+  void PlanPoints();
+  void PlanRecords();
+  // Begins another message.
+  void TurnPage();
 
   const JobRecord job_;
   const std::uint64_t epoch_;
   const Known known_;
-  std::vector<std::vector<Cut>> cuts_;  // Of each message.
+  std::vector<Content> contents_;  // Of each message.
+  std::size_t room_ = 0;           // In the last one, while they are planned. Bytes.
   std::mutex mutex_;
   std::vector<std::optional<grpc::ByteBuffer>> messages_ ABSL_GUARDED_BY(mutex_);
 };

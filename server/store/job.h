@@ -31,6 +31,7 @@ struct JobSpec {
   Settings settings;                          // As requested.
   Plan plan;
   std::string job_key;  // Names what decides the bits of the result. Not known of a job that waits to be restored.
+  std::optional<std::string> records_checksum;  // Of those that the request brought.
   WallTime create_time;
 };
 
@@ -56,6 +57,20 @@ struct QueuePlace {
 struct FieldVersions {
   static constexpr std::size_t kPoints = 512;
   std::vector<std::vector<std::uint64_t>> changed;
+  // Of the log of records: what each state that made it longer brought its length to. Radii change with it.
+  struct Growth {
+    std::uint64_t sequence = 0;
+    std::size_t records = 0;
+  };
+  std::vector<Growth> log;
+
+  // The length of the log in the state of a sequence.
+  std::size_t RecordsAt(std::uint64_t sequence) const {
+    std::size_t records = 0;
+    for (const Growth& growth : log)
+      if (growth.sequence <= sequence) records = growth.records;
+    return records;
+  }
 };
 
 struct JobState {

@@ -4,24 +4,15 @@
 #include <vector>
 
 #include "client/cli/commands/commands.h"
+#include "client/cli/commands/result_input.h"
 #include "client/cli/comparison/comparison.h"
 #include "client/cli/formats/json_text.h"
 #include "client/cli/outputs/outputs.h"
-#include "client/cli/scenes/scene_file.h"
 #include "client/cli/text/numbers.h"
 #include "client/cli/text/text_table.h"
 
 namespace flatlight {
 namespace {
-
-constexpr std::uint64_t kMaxResultBytes = 2'000'000'000;  // Protobuf's own limit is 2 GiB.
-
-absl::StatusOr<v1::RenderResult> ReadResult(const std::string& path, const Interruption& interruption) {
-  const std::string label = path == "-" ? "standard input" : Printable(path);
-  const auto bytes = ReadFile(path, label, kMaxResultBytes, interruption);
-  if (!bytes.ok()) return bytes.status();
-  return ResultFromJson(*bytes, label);
-}
 
 std::string OptionalValue(const std::optional<double>& value) { return value ? FormatValue(*value, 3) : "-"; }
 

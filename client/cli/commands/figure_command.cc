@@ -4,14 +4,14 @@
 #include <utility>
 #include <vector>
 
-#include "client/cli/commands/await_result.h"
+#include "client/cli/commands/caching_figures.h"
 #include "client/cli/commands/commands.h"
 #include "client/cli/commands/console.h"
+#include "client/cli/commands/first_probe.h"
 #include "client/cli/commands/result_outputs.h"
 #include "client/cli/commands/session.h"
 #include "client/cli/comparison/comparison.h"
 #include "client/cli/formats/enum_names.h"
-#include "client/cli/jobs/job_calls.h"
 #include "client/cli/text/numbers.h"
 #include "client/cli/text/text_table.h"
 
@@ -37,18 +37,6 @@ struct ConvergenceFigure {
   std::uint32_t seeds = 4;
 };
 
-absl::StatusOr<v1::RenderResult> RenderFirstProbe(Session& session, const std::string& scene,
-                                                  const v1::Settings& settings, Console& console) {
-  v1::SceneSource source;
-  source.set_name("scenes/" + scene);
-  const auto job = CreateJob(session.connection(), source, settings);
-  if (!job.ok()) return job.status();
-  auto result = AwaitResult(session, *job, console);
-  if (!result.ok()) return result.status();
-  result->mutable_probes()->DeleteSubrange(1, result->probes_size() - 1);
-  return result;
-}
-
 std::string Share(const std::optional<double>& relative) { return relative ? FormatPercent(*relative) : "-"; }
 
 // Rows of a table: how far a formulation's derivatives are from exact ones.
@@ -71,9 +59,11 @@ CommandResult DrawDerivatives(const DerivativesFigure& figure, const CommandLine
   const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
   if (!session.ok()) return session.status();
   Console silent(Console::Answer::kMachine, true);
+  v1::SceneSource source;
+  source.set_name(std::string("scenes/") + figure.scene);
   v1::Settings settings;
   settings.set_method(v1::Settings::EXACT);
-  const auto exact = RenderFirstProbe(**session, figure.scene, settings, silent);
+  const auto exact = RenderFirstProbe(**session, source, settings, silent);
   if (!exact.ok()) return (*session)->Explain(exact.status());
   v1::RenderResult all = *exact;
   all.set_scene(figure.name);
@@ -87,7 +77,7 @@ CommandResult DrawDerivatives(const DerivativesFigure& figure, const CommandLine
   settings.set_method(v1::Settings::RAY_TRACING);
   for (const auto formulation : {v1::Settings::STRATIFIED, v1::Settings::POLYLINE, v1::Settings::ARC_LENGTH}) {
     settings.set_formulation(formulation);
-    const auto result = RenderFirstProbe(**session, figure.scene, settings, silent);
+    const auto result = RenderFirstProbe(**session, source, settings, silent);
     if (!result.ok()) return (*session)->Explain(result.status());
     const std::string name = OptionName(formulation);
     if (absl::Status added = AddRows(name, *result, *exact, rows); !added.ok()) return added;
@@ -106,6 +96,7 @@ std::vector<std::string> FigureNames() {
   std::vector<std::string> names;
   for (const DerivativesFigure& figure : kDerivatives) names.emplace_back(figure.name);
   names.emplace_back(ConvergenceFigure().name);
+  for (const std::string& name : CachingFigureNames()) names.push_back(name);
   return names;
 }
 
@@ -113,6 +104,7 @@ CommandResult Figure(const CommandLine& line, Interruption& interruption) {
   for (const DerivativesFigure& figure : kDerivatives) {
     if (line.figure == figure.name) return DrawDerivatives(figure, line, interruption);
   }
+  if (const auto drawn = DrawCachingFigure(line, interruption)) return *drawn;
   const ConvergenceFigure convergence;
   if (line.figure == convergence.name) {
     CommandLine bench = line;

@@ -6,6 +6,7 @@
 #include "client/cli/commands/console.h"
 #include "client/cli/commands/job_text.h"
 #include "client/cli/commands/plan_text.h"
+#include "client/cli/commands/result_input.h"
 #include "client/cli/commands/result_outputs.h"
 #include "client/cli/commands/session.h"
 #include "client/cli/formats/enum_names.h"
@@ -49,13 +50,16 @@ CommandResult Submit(const CommandLine& line, Interruption& interruption) {
   const auto scene = ParseSceneArgument(line.scene);
   if (!scene.ok()) return scene.status();
   if (absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
+  const auto records = ReadKnownRecords(line.known_records, interruption);
+  if (!records.ok()) return records.status();
   const auto session = OpenServer(line, interruption);
   if (!session.ok()) return session.status();
   Connection& connection = (*session)->connection();
   const auto source = ProvideScene(connection, *scene, line.probes);
   if (!source.ok()) return source.status();
-  const auto job = CreateJob(connection, *source, line.settings, line.job_class);
-  if (!job.ok()) return ExplainSceneError(connection, *scene, *source, job.status());
+  const auto job = CreateJob(connection, *source, line.settings, line.job_class, *records);
+  if (!job.ok())
+    return ExplainSceneError(connection, *scene, *source, ExplainRecordsError(line.known_records, job.status()));
   Console console(Console::Answer::kMachine, line.quiet);
   console.Say("scene     " + Printable(job->scene()) + " (" + scene->label + ")\n" + ShortPlanText(job->plan()));
   return Answer(line.json ? ToJson(*job) : job->name() + '\n');
@@ -67,9 +71,13 @@ CommandResult Watch(const CommandLine& line, Interruption& interruption) {
   Connection& connection = (*session)->connection();
   const auto name = ResolveJobName(connection, line.job);
   if (!name.ok()) return name.status();
-  Console console(line.json ? Console::Answer::kMachine : Console::Answer::kText, line.quiet);
+  Console console(line.json || line.records ? Console::Answer::kMachine : Console::Answer::kText, line.quiet);
   WatchOptions options;
   options.max_rate = console.Rate();
+  if (line.records) {
+    options.max_rate = 20;
+    options.on_record = [](std::uint32_t, const v1::CacheRecord& record) { return PrintBytes(ToJsonLine(record)); };
+  }
   options.on_update = [&console](const v1::Job& job) {
     console.Show(job);
     return console.status();

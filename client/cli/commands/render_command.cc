@@ -5,6 +5,7 @@
 #include "client/cli/commands/commands.h"
 #include "client/cli/commands/console.h"
 #include "client/cli/commands/plan_text.h"
+#include "client/cli/commands/result_input.h"
 #include "client/cli/commands/result_outputs.h"
 #include "client/cli/commands/session.h"
 #include "client/cli/jobs/job_calls.h"
@@ -19,6 +20,8 @@ CommandResult Render(const CommandLine& line, Interruption& interruption) {
   const auto scene = ParseSceneArgument(line.scene);
   if (!scene.ok()) return scene.status();
   if (absl::Status readable = CheckSceneFile(*scene); !readable.ok()) return readable;
+  const auto records = ReadKnownRecords(line.known_records, interruption);
+  if (!records.ok()) return records.status();
   Console console = ConsoleFor(*outputs, line.quiet);
 
   const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
@@ -26,8 +29,10 @@ CommandResult Render(const CommandLine& line, Interruption& interruption) {
   Connection& connection = (*session)->connection();
   const auto source = ProvideScene(connection, *scene, line.probes);
   if (!source.ok()) return (*session)->Explain(source.status());
-  const auto job = CreateJob(connection, *source, line.settings);
-  if (!job.ok()) return ExplainSceneError(connection, *scene, *source, (*session)->Explain(job.status()));
+  const auto job = CreateJob(connection, *source, line.settings, v1::INTERACTIVE, *records);
+  if (!job.ok())
+    return ExplainSceneError(connection, *scene, *source,
+                             ExplainRecordsError(line.known_records, (*session)->Explain(job.status())));
   console.Say("scene     " + Printable(job->scene()) + " (" + scene->label + ")\n" + ShortPlanText(job->plan()));
   if (!(*session)->is_private()) console.Say("job       " + job->name() + '\n');
 

@@ -98,6 +98,7 @@ std::string ResultText(const v1::RenderResult& result) {
   text += EndText(result.end_reason()) + " in " + FormatSeconds(statistics.wall_seconds());
   if (statistics.has_cpu_seconds()) text += " (" + FormatSeconds(statistics.cpu_seconds()) + " of processor time)";
   if (statistics.has_records()) text += ", " + FormatCount(statistics.records()) + " records";
+  if (statistics.has_reused_records()) text += " (" + FormatCount(statistics.reused_records()) + " reused)";
   if (statistics.rays() > 0) text += ", " + FormatCount(statistics.rays()) + " rays";
   return text + '\n';
 }

@@ -55,11 +55,16 @@ std::string LayOutJson(std::string_view compact) {
   return out;
 }
 
-std::string ToJson(const google::protobuf::Message& message) {
+std::string ToJsonLine(const google::protobuf::Message& message) {
   std::string compact;
   // Cannot fail: the API has no Any but in google.rpc.Status, whose details are linked into the program.
   if (!google::protobuf::util::MessageToJsonString(message, &compact).ok()) compact = "{}";
-  return LayOutJson(compact);
+  return compact + '\n';
+}
+
+std::string ToJson(const google::protobuf::Message& message) {
+  const std::string line = ToJsonLine(message);
+  return LayOutJson(std::string_view(line).substr(0, line.size() - 1));
 }
 
 absl::StatusOr<v1::RenderResult> ResultFromJson(const std::string& json, const std::string& source) {
@@ -67,7 +72,11 @@ absl::StatusOr<v1::RenderResult> ResultFromJson(const std::string& json, const s
   options.ignore_unknown_fields = true;
   v1::RenderResult result;
   const auto status = google::protobuf::util::JsonStringToMessage(json, &result, options);
-  if (!status.ok()) return UsageError(source + " is not a result in JSON form: " + status.message().ToString());
+  if (!status.ok()) {
+    // What follows on further lines is the place, of a file whose lines may be very long.
+    const std::string reason = status.message().ToString();
+    return UsageError(source + " is not a result in JSON form: " + reason.substr(0, reason.find('\n')));
+  }
   if (result.probes().empty()) return UsageError(source + " holds no probes: is it a result in JSON form?");
   for (v1::ProbeResult& probe : *result.mutable_probes()) {
     if (!probe.has_channels()) probe.set_channels(1);

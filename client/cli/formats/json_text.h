@@ -16,6 +16,9 @@ namespace flatlight {
 // A member a line, arrays of numbers on one line; ends with a newline.
 std::string ToJson(const google::protobuf::Message& message);
 
+// The same on one line, without spaces.
+std::string ToJsonLine(const google::protobuf::Message& message);
+
 // The same layout for any compact JSON text.
 std::string LayOutJson(std::string_view compact);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "client/cli/formats/enum_names.h"
+#include "client/cli/formats/plot_records.h"
 #include "client/cli/formats/plot_series.h"
 #include "client/cli/formats/plot_style.h"
 #include "client/cli/text/numbers.h"
@@ -22,6 +23,8 @@ constexpr int kWidth = 900;  // Of the picture, in pixels (PNG: twice that).
 constexpr int kHead = 74;    // Height of title and legend.
 constexpr int kFirstPanel = 300;
 constexpr int kOtherPanel = 190;
+constexpr int kRecordRow = 46;        // Of the panel of records, for each row,
+constexpr int kRecords = 26;          // and for its legend.
 constexpr int kGap = 16;              // Between panels.
 constexpr int kFoot = 58;             // Height of the axis at the bottom.
 constexpr std::size_t kMarkers = 48;  // Up to this many points are marked.
@@ -128,11 +131,17 @@ std::string RangeCommand(const Panel& panel) {
 
 std::string PlotScript(const v1::RenderResult& result, PlotForm form) {
   const std::vector<Panel> panels = Panels(result);
-  const int height = kHead + kFirstPanel + static_cast<int>(panels.size() - 1) * (kGap + kOtherPanel) + kFoot;
+  // Over another axis they mean nothing.
+  const std::vector<RecordRow> rows = HasArcLengths(result) ? RecordRowsOf(result) : std::vector<RecordRow>();
+  const int records = rows.empty() ? 0 : kRecords + static_cast<int>(rows.size()) * kRecordRow;
+  const int height = kHead + kFirstPanel + static_cast<int>(panels.size() - 1) * (kGap + kOtherPanel) +
+                     (records > 0 ? kGap + records : 0) + kFoot;
   const auto screen = [height](int y) { return FormatValue(1 - static_cast<double>(y) / height, 6); };
 
   std::string script = PlotTerminal(form, kWidth, height);
   for (const Panel& panel : panels) script += DataBlocks(panel);
+  const RecordPlot record_plot = rows.empty() ? RecordPlot() : PlotOf(rows);
+  script += record_plot.data;
   script +=
       "set encoding utf8\nset multiplot\nset border 3 linecolor rgb '#404040' linewidth 0.8\n"
       "set tics nomirror scale 0.5 textcolor rgb '#404040'\nset grid linetype 1 linecolor rgb '#e4e4e4' linewidth 0.5\n"
@@ -147,7 +156,7 @@ std::string PlotScript(const v1::RenderResult& result, PlotForm form) {
   int top = kHead;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const int bottom = top + (i == 0 ? kFirstPanel : kOtherPanel);
-    const bool last = i + 1 == panels.size();
+    const bool last = i + 1 == panels.size() && rows.empty();
     script += "set tmargin at screen " + screen(top) + "\nset bmargin at screen " + screen(bottom) + "\n";
     // Not a ylabel: its place would depend on the width of the numbers, and differ from panel to panel.
     script += "set label 3 '" + panels[i].quantity.label + "' at screen 0.036, screen " + screen((top + bottom) / 2) +
@@ -161,6 +170,14 @@ std::string PlotScript(const v1::RenderResult& result, PlotForm form) {
     }
     script += PlotCommand(panels[i]) + "unset label\nunset key\n";
     top = bottom + kGap;
+  }
+  if (!rows.empty()) {
+    // The panels above have set the range of the axis.
+    script +=
+        "set tmargin at screen " + screen(top + kRecords) + "\nset bmargin at screen " + screen(top + records) +
+        "\nset xrange [GPVAL_X_MIN:GPVAL_X_MAX]\nset xlabel 'arc length  {/:Italic s}  [m]'\nset format x '%g'\n" +
+        "set format y '%s'\nset key at screen 0.975, screen " + screen(top + kRecords / 2) +
+        " right center horizontal Left reverse samplen 1.8 textcolor rgb '#404040'\n" + record_plot.commands;
   }
   return script + "unset multiplot\n";
 }

@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_CLIENT_CLI_JOBS_JOB_CALLS_H_
 #define FLATLIGHT_CLIENT_CLI_JOBS_JOB_CALLS_H_
 
+#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
@@ -12,7 +13,8 @@ namespace flatlight {
 
 // Repeats itself if the server was lost on the way; a request id makes sure that there is one job.
 absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource& scene, const v1::Settings& settings,
-                                  v1::JobClass job_class = v1::INTERACTIVE);
+                                  v1::JobClass job_class = v1::INTERACTIVE,
+                                  const std::optional<v1::KnownRecords>& records = std::nullopt);
 
 absl::StatusOr<v1::Job> GetJob(Connection& connection, const std::string& name);
 

@@ -42,7 +42,7 @@ class Watch {
     for (;;) {
       const grpc::Status status = ReadStream();
       if (!unwanted_.ok()) return unwanted_;
-      if (HasEnded(job_.state())) return job_;
+      if (Done()) return job_;
       if (connection_.interruption().Requested()) return InterruptedError("interrupted");
       if (status.error_code() == grpc::StatusCode::NOT_FOUND && heard_anything_)
         return JobError("the server no longer knows " + request_.name() + "; it was restarted, or the job deleted");
@@ -52,6 +52,9 @@ class Watch {
   }
 
  private:
+  // The state that ended the job comes first; its records may follow.
+  bool Done() const { return HasEnded(job_.state()) && (whole_ || !options_.on_record); }
+
   grpc::Status ReadStream() {
     MessageStream<v1::WatchJobResponse> stream(
         connection_, [this](grpc::ClientContext* context, grpc::CompletionQueue* queue) {
@@ -60,7 +63,7 @@ class Watch {
     v1::WatchJobResponse message;
     while (stream.Next(message, options_.silence)) {
       Take(message);
-      if (HasEnded(job_.state()) || !unwanted_.ok()) return grpc::Status::OK;
+      if (Done() || !unwanted_.ok()) return grpc::Status::OK;
     }
     return stream.Finish();
   }
@@ -69,6 +72,10 @@ class Watch {
     heard_anything_ = true;
     failures_ = 0;
     last_message_ = steady_clock::now();
+    // Of another epoch all begins anew.
+    if (request_.epoch() != 0 && message.epoch() != request_.epoch()) records_ = 0;
+    TakeRecords(message);
+    whole_ = !message.more();
     if (!message.more()) {
       request_.set_epoch(message.epoch());
       request_.set_sequence(message.sequence());
@@ -82,7 +89,20 @@ class Watch {
       *job.mutable_plan() = job_.plan();
     }
     job_ = std::move(job);
-    if (options_.on_update) unwanted_ = options_.on_update(job_);
+    if (options_.on_update && unwanted_.ok()) unwanted_ = options_.on_update(job_);
+  }
+
+  // What was begun and not ended comes again.
+  void TakeRecords(const v1::WatchJobResponse& message) {
+    if (!options_.on_record) return;
+    for (const v1::RecordUpdate& update : message.records()) {
+      for (int i = 0; i < update.records_size() && unwanted_.ok(); ++i) {
+        const std::uint32_t index = update.first() + static_cast<std::uint32_t>(i);
+        if (index != records_) continue;
+        unwanted_ = options_.on_record(index, update.records(i));
+        ++records_;
+      }
+    }
   }
 
   absl::Status WaitForNextTry(const grpc::Status& status) {
@@ -101,7 +121,9 @@ class Watch {
   const WatchOptions& options_;
   v1::WatchJobRequest request_;
   v1::Job job_;
-  absl::Status unwanted_;  // Why no more updates are wanted.
+  absl::Status unwanted_;      // Why no more updates are wanted.
+  std::uint32_t records_ = 0;  // Received: of the log, in order.
+  bool whole_ = false;         // The last message was the last of its state.
   bool heard_anything_ = false;
   int failures_ = 0;
   steady_clock::time_point last_message_ = steady_clock::now();

@@ -3,6 +3,7 @@
 #define FLATLIGHT_CLIENT_CLI_JOBS_WATCH_H_
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -17,8 +18,10 @@ struct WatchOptions {
   // A stream that breaks is taken up again where it ended, for as long as no more than this passes without a message.
   std::chrono::milliseconds patience = std::chrono::seconds(30);
   std::chrono::milliseconds silence = std::chrono::seconds(25);  // Heartbeats come every 10 s.
-  // With the newest state, never going back; an error ends the watch. May be empty, as the next.
+  // With the newest state, never going back; an error ends the watch. May be empty, as the next ones.
   std::function<absl::Status(const v1::Job&)> on_update;
+  // With each cache record once, in order of its index; an error ends the watch.
+  std::function<absl::Status(std::uint32_t index, const v1::CacheRecord&)> on_record;
   std::function<absl::Status()> check_server;  // Asked before every new try; an error ends the watch.
 };
 

@@ -82,6 +82,13 @@ void AddCaching(CLI::App& app, SettingsOptions& settings) {
       ->type_name("N");
 }
 
+void AddCachingExtras(CLI::App& app, SettingsOptions& settings) {
+  app.add_flag("--neighbour-clamping", settings.neighbour_clamping,
+               "a record counts no further than to another one and as far as that one does");
+  app.add_flag("--overture", settings.overture,
+               "place records for two thirds of the tolerance, use them up to all of it");
+}
+
 void AddThreadsAndSkips(CLI::App& app, SettingsOptions& settings) {
   app.add_option("--threads", settings.threads, "at most so many (default: all the server's)")->type_name("N");
   app.add_option("--no-skip", settings.no_skip, "do work that could be left out, see explain; may be repeated")
@@ -102,6 +109,7 @@ void AddSettings(CLI::App& app, Raw& raw) {
   AddDerivatives(app, settings);
   AddFormulation(app, settings);
   AddCaching(app, settings);
+  AddCachingExtras(app, settings);
   app.add_option("--target-error", settings.target_error, "stop at this relative standard error, in (0, 1]")
       ->type_name("E");
   app.add_option("--time-limit", settings.time_limit, "stop after so many seconds")->type_name("S");
@@ -135,6 +143,12 @@ void AddSceneCommands(CLI::App& app, Raw& raw) {
     command.add_option("--picture", raw.picture, "a picture of the light in the whole scene, in place of its probes")
         ->type_name("WxH");
     AddSettings(command, raw);
+    if (render || submit) {
+      command
+          .add_option("--records", raw.line.known_records,
+                      "begin with the records of a result (JSON) or of an ended job of the server (jobs/UUID)")
+          ->type_name("FILE");
+    }
     if (render) AddOutputs(command, raw);
     if (submit) AddJobClass(command, raw);
     AddJson(command, raw, render ? "the result" : submit ? "the job" : "the plan");
@@ -156,6 +170,7 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   CLI::App& watch = AddCommand(app, "watch", "follow a job until it has ended", kWatchHelp);
   AddJob(watch, raw);
   AddJson(watch, raw, "the ended job");
+  watch.add_flag("--records", raw.line.records, "print cache records as they are made: JSON, one a line");
   AddQuiet(watch, raw);
   CLI::App& jobs = AddCommand(app, "jobs", "list the jobs of a server");
   AddJson(jobs, raw, "the list");
@@ -190,7 +205,7 @@ void AddCompare(CLI::App& app, Raw& raw) {
 void AddFigure(CLI::App& app, Raw& raw) {
   CLI::App& figure =
       AddCommand(app, "figure", "repeat an experiment of the papers: key numbers, CSV, plot", kFigureHelp);
-  figure.add_option("NAME", raw.line.figure, "derivatives, derivatives-occluded or convergence")->required();
+  figure.add_option("NAME", raw.line.figure, "one of those below")->required();
   figure.add_option("--samples", raw.settings.samples, "first rays a point (default 256)")->type_name("N");
   figure.add_option("--seed", raw.settings.seed, "another seed (default 0)")->type_name("N");
   AddOutputs(figure, raw);

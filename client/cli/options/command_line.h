@@ -21,11 +21,13 @@ struct CommandLine {
   std::string server;   // Of --server; empty if not given.
   bool json = false;
   bool quiet = false;
-  std::string scene;   // SCENE as written; of `scenes`, the name of one, or empty.
-  std::string job;     // JOB as written.
-  std::string figure;  // Of `figure`: its name.
+  std::string scene;     // SCENE as written; of `scenes`, the name of one, or empty.
+  std::string job;       // JOB as written.
+  bool records = false;  // Of `watch`: print them as they are made.
+  std::string figure;    // Of `figure`: its name.
   v1::Settings settings;
   v1::JobClass job_class = v1::INTERACTIVE;  // Of `submit`.
+  std::string known_records;                 // Of --records: a result file or jobs/UUID; empty if not given.
   std::vector<v1::Probe> probes;             // Of --picture: in place of the scene's own.
   std::vector<std::string> outputs;
   std::vector<std::string> results;  // The two files of `compare` and of `bench compare`.

@@ -47,6 +47,8 @@ Example:
 
 inline constexpr char kWatchHelp[] =
     R"(Waits until the job has ended, and takes up a broken connection again by itself. Ctrl-C stops watching; the job goes on.
+With --records the log of irradiance caching's records goes to standard output, from its beginning and each record once,
+and all else to standard error. The radii of records become smaller as others join them: the result has the last ones.
 JOB is jobs/UUID, a UUID, or the beginning of one.)";
 
 inline constexpr char kJobHelp[] = R"(JOB is jobs/UUID, a UUID, or the beginning of one.)";
@@ -65,6 +67,9 @@ inline constexpr char kFigureHelp[] = R"(Figures:
   derivatives           gradient and Hessian below a light, exact and in all formulations; nothing blocks
   derivatives-occluded  the same behind a plate, where arc-length fails (Jarosz et al. 2012)
   convergence           error of every method against run time, with fitted slopes; -o as in `flatlight bench`
+  extrapolation         what gradient and Hessian of two records tell of the irradiance around them
+  records-walls         where records go beside a white wall, a black one and none: mean distance against Hessian
+  records-errors        error against number of records, for every error control and degree of extrapolation (.csv .svg .png)
 
 Examples:
   flatlight figure derivatives-occluded -o figure.svg -o figure.csv

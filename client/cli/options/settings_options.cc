@@ -112,6 +112,8 @@ absl::StatusOr<v1::Settings> ParseSettings(const SettingsOptions& options) {
     if (!result.ok())
       mistakes += (mistakes.empty() ? "" : "\n") + std::string(result.message().data(), result.message().size());
   if (!mistakes.empty()) return UsageError(mistakes);
+  if (options.neighbour_clamping) settings.set_neighbour_clamping(true);
+  if (options.overture) settings.set_overture(true);
   for (const std::string& name : options.no_skip) settings.add_no_skip(name);
   return settings;
 }

@@ -17,6 +17,7 @@ namespace flatlight {
 struct SettingsOptions {
   std::optional<std::string> method, samples, max_bounces, seed, derivatives, formulation, target_error, time_limit,
       threads, error_control, gather, extrapolation, tolerance, max_records;
+  bool neighbour_clamping = false, overture = false;
   std::vector<std::string> no_skip;
 };
 

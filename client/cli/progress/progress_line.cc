@@ -33,6 +33,8 @@ std::string Details(const v1::Job& job) {
   const v1::Progress& progress = job.progress();
   std::string text;
   if (progress.has_relative_error()) text += "  error " + FormatPercent(progress.relative_error());
+  if (progress.records() > 0)
+    text += "  " + FormatCount(progress.records()) + (progress.records() == 1 ? " record" : " records");
   if (progress.rays() > 0 && progress.elapsed_seconds() > 0)
     text += "  " + FormatCount(progress.rays() / progress.elapsed_seconds()) + " rays/s";
   if (progress.has_remaining_seconds() && job.state() == v1::Job::RUNNING)

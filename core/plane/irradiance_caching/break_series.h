@@ -11,16 +11,14 @@ namespace flatlight {
 // Of arc length along the receiver.
 using ArcSeries = Series<kRecordOrders>;
 
-// A direction in which what is seen begins or ends, as the receiver moves along a line or circle, or, but for
-// terms of the third order with the second derivative of its curvature, along another curve: the break
-// law theta' = kappa - c q, q' = s q^2 + R c q^3 to any order (see Derive in edge.h; THEORY 18 B1).
+// A direction in which what is seen begins or ends, as the receiver moves along a line or circle, or, up to the third
+// derivative, along another curve: the break law theta' = kappa - c q, q' = s q^2 + R c q^3 to any order (see Derive in
+// edge.h; THEORY 18 B1).
 struct DirectionSeries {
   ArcSeries sine, cosine;
 };
-DirectionSeries SeriesOf(const Edge& edge, double curvature, double curvature_change);
-inline ArcSeries SineSeries(const Edge& edge, const Receiver& receiver) {
-  return SeriesOf(edge, receiver.curvature, receiver.curvature_change).sine;
-}
+DirectionSeries SeriesOf(const Edge& edge, const Receiver& receiver);
+inline ArcSeries SineSeries(const Edge& edge, const Receiver& receiver) { return SeriesOf(edge, receiver).sine; }
 
 }  // namespace flatlight
 

@@ -10,17 +10,20 @@
 namespace flatlight {
 namespace {
 
-// The light's place in the receiver's frame: along the tangent and the normal, t' = kappa n.
+// The light's place in the receiver's frame: along the tangent and the normal, t' = kappa n. Up to the third derivative
+// on curves whose curvature changes, as SeriesOf in break_series.h.
 struct Place {
   ArcSeries tangent, normal, squared;
 
   Place(Vector2 toward, const Receiver& receiver) {
     tangent[0] = Dot(receiver.tangent, toward), normal[0] = Dot(receiver.normal, toward);
     squared[0] = LengthSquared(toward);
+    ArcSeries kappa;
+    kappa[0] = receiver.curvature, kappa[1] = receiver.curvature_change, kappa[2] = 0.5 * receiver.curvature_second;
     for (std::size_t k = 0; k + 1 < kRecordOrders; ++k) {
       const double step = 1 / static_cast<double>(k + 1);
-      tangent[k + 1] = step * (receiver.curvature * normal[k] - (k == 0 ? 1 : 0));
-      normal[k + 1] = -step * receiver.curvature * tangent[k];
+      tangent[k + 1] = step * (ArcSeries::Times(kappa, normal, k) - (k == 0 ? 1 : 0));
+      normal[k + 1] = -step * ArcSeries::Times(kappa, tangent, k);
       squared[k + 1] = -2 * step * tangent[k];
     }
   }

@@ -21,8 +21,6 @@ constexpr int kDistanceRays = 64;
 // The fourth derivative of what rays bring is noise.
 constexpr std::size_t kKnownOfRays = 4;
 
-Spectrum Difference(const Spectrum& a, const Spectrum& b) { return a + -1.0 * b; }
-
 // The mean of 1/r over the hemicircle, weighed by the cosine: at directions of equal steps of their sine.
 double InverseDistance(const RayCaster& caster, const Receiver& receiver) {
   double sum = 0;
@@ -86,7 +84,7 @@ void RecordMaker::AddReflected(const Receiver& receiver, std::uint64_t key, cons
                             : Side::kBack;
       emitted = scene.curve_of(ray.element).EmittedRadiance(side);
     }
-    ray.radiance = Difference(ray.radiance, emitted);
+    ray.radiance = ray.radiance - emitted;
     for (double& value : ray.radiance.value) value = std::max(value, 0.0);
   }
   record.known = kKnownOfRays;
@@ -99,7 +97,7 @@ void RecordMaker::AddReflected(const Receiver& receiver, std::uint64_t key, cons
     edge.s = after.begin, edge.c = std::sqrt(std::max(0.0, 1 - after.begin * after.begin));
     edge.q = std::max(before.InverseDistance(), after.InverseDistance());
     const ArcSeries sine = SineSeries(after.break_before.value_or(edge), receiver);
-    const Spectrum jump = Difference(before.radiance, after.radiance);
+    const Spectrum jump = before.radiance - after.radiance;
     for (std::size_t m = 1; m < kRecordOrders; ++m)
       record.derivative[m] = record.derivative[m] + sine.Derivative(m) * jump;
     // Of neighbours' difference half is each one's own noise; what it changes by counts with it.
@@ -109,7 +107,7 @@ void RecordMaker::AddReflected(const Receiver& receiver, std::uint64_t key, cons
   record.surroundings.radiometric = record.surroundings.radiometric + ArcLengthDerivatives(receiver, gathered).second;
   record.noise = std::sqrt(variance.Max());
   // Of the order of the gradient, where something that reflects is covered or comes into sight.
-  const Spectrum gradient = Difference(record.derivative[1], direct_gradient);
+  const Spectrum gradient = record.derivative[1] - direct_gradient;
   for (const double value : gradient.value) record.unknown_jump = std::max(record.unknown_jump, std::abs(value));
 }
 

@@ -88,7 +88,7 @@ class SeriesChart {
   ArcSeries End(const PieceEnd& end, const Receiver& receiver, const Moving& moving, bool own_circle) const {
     const ArcSeries fixed = ArcSeries::Constant(end.u);
     if (end.own && end.edge.kind == Edge::Kind::kVertex) return fixed;
-    const DirectionSeries direction = SeriesOf(end.edge, receiver.curvature, 0);
+    const DirectionSeries direction = SeriesOf(end.edge, receiver);
     const VectorSeries ray = direction.sine * moving.tangent + direction.cosine * moving.normal;
     if (!arc_) {
       const VectorSeries along = VectorSeries::Constant(element_.b - element_.a);
@@ -126,6 +126,20 @@ class SeriesChart {
   bool arc_;
   double half_tangent_ = 0;
 };
+
+// The chord of a unit circle from where its normal is n to where it is m. Near n its direction is lost to rounding:
+// then `ahead` tells whether m lies counter-clockwise (1) or clockwise (-1) of it.
+ArcSeries Chord(const VectorSeries& n, const VectorSeries& m, double ahead) {
+  constexpr double kNear = 1e-8;
+  const ArcSeries sine = Cross(n, m), cosine = Dot(n, m);
+  if (!(cosine[0] > 0)) {
+    const VectorSeries d = m - n;
+    return Sqrt(Dot(d, d));
+  }
+  const double side = std::abs(sine[0]) > kNear ? (sine[0] > 0 ? 1 : -1) : ahead;
+  // 2 sin(a/2) = sin a / cos(a/2)
+  return side * sine / Sqrt(0.5 * (ArcSeries::Constant(1) + cosine));
+}
 
 // Sums of Legendre polynomials of a moving place.
 class Polynomial {
@@ -182,9 +196,16 @@ std::array<Spectrum, kRecordOrders> ReflectedSeries::At(const Receiver& receiver
       const auto add = [&](const ArcSeries& u, const ArcSeries& weight) {
         const SeriesChart::Place place = series_chart.At(u);
         const VectorSeries d = place.position - moving.position;
-        const ArcSeries q = Dot(d, d), root = Sqrt(q);
-        const ArcSeries kernel = own_radius != 0 ? (0.25 / (own_radius * own_radius)) * root
-                                                 : (-sign * Dot(moving.normal, d)) * Dot(place.normal, d) / (q * root);
+        const auto kernel_of = [&] {
+          if (own_radius != 0) {
+            const bool near_first = std::abs(u[0] - first.u) <= std::abs(u[0] - last.u);
+            const double ahead = near_first == (element.Orientation() > 0) ? 1 : -1;
+            return (0.25 / std::abs(own_radius)) * Chord(moving.normal, sign * place.normal, ahead);
+          }
+          const ArcSeries q = Dot(d, d);
+          return (-sign * Dot(moving.normal, d)) * Dot(place.normal, d) / (q * Sqrt(q));
+        };
+        const ArcSeries kernel = kernel_of();
         const ArcSeries weighted = weight * place.speed * kernel;
         const Polynomial polynomial(stretch * (u - ArcSeries::Constant(panel.low)) - ArcSeries::Constant(1));
         for (std::size_t c = 0; c < channels; ++c) {

@@ -33,8 +33,6 @@ std::uint64_t IdentityOf(const Spectrum& radiance) {
   return identity;
 }
 
-Spectrum Difference(const Spectrum& a, const Spectrum& b) { return a + -1.0 * b; }
-
 }  // namespace
 
 Skyline::Skyline(const RayCaster& caster, const std::vector<Chart>& charts, bool reflects,
@@ -138,7 +136,7 @@ std::array<Spectrum, kRecordOrders> Skyline::Irradiance() const {
     if (begin) direct[0] = direct[0] + SineDifference(*begin, b.edge, receiver_) * b.before;
     begin = &b.edge;
     const ArcSeries sine = SineSeries(b.edge, receiver_);
-    const Spectrum jump = Difference(b.before, b.after);
+    const Spectrum jump = b.before - b.after;
     for (std::size_t k = 1; k < kRecordOrders; ++k) direct[k] = direct[k] + sine.Derivative(k) * jump;
   }
   if (reflected_) {

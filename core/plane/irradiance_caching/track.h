@@ -25,6 +25,10 @@ class Track {
   // Absent (kNone) for free points.
   CurveId curve() const { return curve_; }
   Side side() const { return side_; }
+  // Whether coordinates are arc lengths of a curve; else they are distances from the free point.
+  bool by_arc_length() const { return first_ != last_; }
+  // Of free points: where a place lies along the tangent.
+  double CoordinateOf(Point2 place) const { return Dot(origin_.tangent, place - origin_.position); }
 
  private:
   const Scene* scene_;

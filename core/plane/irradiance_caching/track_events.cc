@@ -42,7 +42,7 @@ std::vector<VisibilityEvent> EventsBetween(Skyline& skyline, const Track& track,
       const std::array<Spectrum, kRecordOrders> before = skyline.Irradiance();
       here = look(far);
       const std::array<Spectrum, kRecordOrders> beyond = skyline.Irradiance();
-      for (std::size_t k = 0; k < event.jump.size(); ++k) event.jump[k] = beyond[k] + -1.0 * before[k];
+      for (std::size_t k = 0; k < event.jump.size(); ++k) event.jump[k] = beyond[k] - before[k];
       if (!events.empty() && event.at - events.back().at <= kTogether * (to - places[i - 1])) {
         for (std::size_t k = 0; k < event.jump.size(); ++k)
           events.back().jump[k] = events.back().jump[k] + event.jump[k];

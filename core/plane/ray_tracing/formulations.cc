@@ -12,8 +12,6 @@ namespace {
 // Grazing rays count as if they were this steep: what they add has no bound.
 constexpr double kLeastCosine = 1e-3;
 
-Spectrum Difference(const Spectrum& a, const Spectrum& b) { return a + -1.0 * b; }
-
 // A fixed point in a direction, for its motion alone.
 Edge FixedEdge(double sine, double inverse_distance) {
   Edge edge;
@@ -45,7 +43,7 @@ GatherDerivatives StratifiedDerivatives(const Receiver& receiver, const std::vec
   for (std::size_t k = 1; k < gathered.size(); ++k) {
     const GatheredRay &before = gathered[k - 1], &after = gathered[k];
     const Edge between = FixedEdge(after.begin, std::max(before.InverseDistance(), after.InverseDistance()));
-    sum.Add(Difference(before.radiance, after.radiance), after.break_before.value_or(between));
+    sum.Add(before.radiance - after.radiance, after.break_before.value_or(between));
   }
   return sum.sum();
 }
@@ -62,11 +60,11 @@ GatherDerivatives PolylineDerivatives(const Receiver& receiver, const std::vecto
     if (next != nullptr && !next->break_before && next->InverseDistance() <= vertex.q) {
       right = next->radiance;
     }
-    sum.Add(Difference(left, right), vertex);
+    sum.Add(left - right, vertex);
     left = right;
     if (next == nullptr || !next->break_before) continue;
     // The nearer surface goes on to where it ends.
-    sum.Add(Difference(ray.radiance, next->radiance), *next->break_before);
+    sum.Add(ray.radiance - next->radiance, *next->break_before);
     left = next->radiance;
   }
   return sum.sum();

@@ -14,43 +14,18 @@ import socket
 import struct
 import subprocess
 import sys
-import tempfile
 import unittest
 
 sys.path.insert(0, __file__.rsplit("/", 2)[0])
+from cli_case import FLATLIGHT, FLATLIGHTD, CliCase
 from daemon import Daemon
 from picture_files import PictureReader
 
-FLATLIGHT, FLATLIGHTD = sys.argv[1:3]
 # A job that would take hours, but for its end.
 ENDLESS = ["gallery:penumbra", "--method", "path-tracing", "--samples", "4000000000"]
 
 
-class EndToEnd(PictureReader, unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="flatlight-test-")
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-        self.temporary = os.path.join(self.folder, "tmp")
-        os.mkdir(self.temporary)
-        self.environment = {key: value for key, value in os.environ.items() if not key.startswith("FLATLIGHT_")}
-        self.environment["TMPDIR"] = self.temporary
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def run_cli(self, *arguments, status=0, text=True, **options):
-        options.setdefault("env", self.environment)
-        run = subprocess.run([FLATLIGHT, *arguments], capture_output=True, text=text, timeout=90, cwd=self.folder, **options)
-        self.assertEqual(run.returncode, status, f"{arguments}\n{run.stdout}\n{run.stderr}")
-        self.assertEqual(os.listdir(self.temporary), [], "a private server left its folder")
-        return run
-
-    def write(self, name, text):
-        with open(self.path(name), "w") as file:
-            file.write(text)
-        return name
-
+class EndToEnd(PictureReader, CliCase):
     def assert_no_leftovers(self):
         self.assertEqual(glob.glob(self.path(".flatlight-*")), [])
 

@@ -93,6 +93,61 @@ TEST(PlacementTest, ABudgetIsSpentAndNotExceeded) {
   }
 }
 
+// The range of a record's error, up to `most`.
+double RangeOf(const CacheRecord& record, double tolerance, double most) {
+  double range = 0;
+  while (range < most && record.SmoothError(range) <= tolerance) range += 1e-3;
+  return range;
+}
+
+TEST(PlacementTest, NeighboursClampEachOther) {
+  const std::vector<double> points = Points(400, 0, 4);
+  for (const ErrorControl control : {ErrorControl::kOcclusionHessian, ErrorControl::kVisibilityEvents}) {
+    PlacementOptions options{.control = control, .degree = 1, .tolerance = 0.05};
+    const std::size_t without = Fill(Placement({points}, options), Wave).size();
+    options.clamp_neighbours = true;
+    const std::vector<CacheRecord> records = Fill(Placement({points}, options), Wave);
+    EXPECT_GE(records.size(), without);
+    for (const CacheRecord& a : records) {
+      for (const CacheRecord& b : records) {
+        EXPECT_LE(RangeOf(a, options.tolerance, 4), RangeOf(b, options.tolerance, 4) + std::abs(a.at - b.at) + 2e-3);
+      }
+    }
+  }
+}
+
+TEST(PlacementTest, AnOvertureMakesMoreOverlap) {
+  const std::vector<double> points = Points(400, 0, 4);
+  PlacementOptions options{.control = ErrorControl::kOcclusionHessian, .degree = 1, .tolerance = 0.01};
+  const auto overlap = [&] {
+    const std::vector<CacheRecord> records = Fill(Placement({points}, options), Wave);
+    std::vector<const CacheRecord*> all;
+    for (const CacheRecord& record : records) all.push_back(&record);
+    const TrackInterpolation interpolation(all, 1, Weighting::kDistance);
+    double count = 0;
+    for (const double point : points) count += static_cast<double>(interpolation.At(point).records);
+    return count / static_cast<double>(points.size());
+  };
+  const double plain = overlap();
+  options.overture = true;
+  EXPECT_GT(overlap(), 1.1 * plain);
+}
+
+// Irradiance beside a corner that reflects, of which a few derivatives say little.
+TEST(PlacementTest, EstimatesHoldBesideACorner) {
+  const Function corner = [](double x) {
+    return std::array<double, kRecordOrders>{2 + x * std::log(x), std::log(x) + 1, 1 / x, -1 / (x * x),
+                                             2 / (x * x * x)};
+  };
+  const std::vector<double> points = Points(400, 0, 1);
+  for (const std::size_t degree : {1u, 2u}) {
+    for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+      const Placement placement({points}, {.degree = degree, .tolerance = tolerance});
+      EXPECT_LE(WorstError(Fill(placement, corner), points, 0, degree, corner), 1.02 * tolerance) << degree;
+    }
+  }
+}
+
 TEST(PlacementTest, NeverMoreRecordsThanPoints) {
   const std::vector<double> points = Points(7, 0, 50);
   const Placement placement({points}, {.degree = 1, .tolerance = 1e-9});

@@ -47,9 +47,17 @@ v1::ProbeResult FullProbe(v1::ProbeResult::Quantity quantity) {
 v1::CacheRecord FullRecord(v1::CacheRecord::Side side) {
   v1::CacheRecord record;
   for (auto* values : {record.mutable_position(), record.mutable_normal(), record.mutable_radius()}) Add(*values, 2);
-  for (auto* values : {record.mutable_irradiance(), record.mutable_gradient(), record.mutable_hessian()}) {
+  v1::Surroundings& seen = *record.mutable_surroundings();
+  for (auto* values : {record.mutable_irradiance(), record.mutable_gradient(), record.mutable_hessian(),
+                       record.mutable_third(), record.mutable_fourth(), seen.mutable_radiometric()}) {
     Add(*values, 3);
   }
+  seen.set_inverse_distance(0.5);
+  seen.set_geometric(0.75);
+  seen.set_turning(1.25);
+  record.set_arc_length(1.5);
+  record.set_noise(1e-3);
+  record.set_unknown_jump(2e-3);
   record.set_curve("floor");
   record.set_side(side);
   record.set_bounce(0);
@@ -84,8 +92,10 @@ TEST(ResultReadTest, WhatIsReadBackIsWrittenTheSame) {
   result.mutable_statistics()->set_rays(123);
   result.mutable_statistics()->set_error_bound(1e-9);
   result.mutable_statistics()->set_records(2);
+  result.mutable_statistics()->set_reused_records(1);
   ExpectEveryFieldIn({&result.probes(0), &result.probes(1)});
   ExpectEveryFieldIn({&result.records(0)});
+  ExpectEveryFieldIn({&result.records(0).surroundings()});
   EXPECT_EQ(ResultToProto(OutlineOf(result), FieldOf(result)).DebugString(), result.DebugString());
 }
 

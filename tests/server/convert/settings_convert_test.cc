@@ -32,6 +32,8 @@ v1::Settings EverySetting() {
   proto.set_extrapolation(0);
   proto.set_tolerance(0.03);
   proto.set_max_records(12);
+  proto.set_neighbour_clamping(true);
+  proto.set_overture(false);
   proto.add_no_skip("colour");
   proto.add_no_skip("visibility");
   return proto;
@@ -55,6 +57,8 @@ TEST(SettingsConvertTest, EverySettingComesBack) {
   EXPECT_EQ(settings.extrapolation, 0U);
   EXPECT_EQ(settings.tolerance, 0.03);
   EXPECT_EQ(settings.max_records, 12U);
+  EXPECT_EQ(settings.neighbour_clamping, true);
+  EXPECT_EQ(settings.overture, false);
   EXPECT_THAT(settings.no_skip, ElementsAre("colour", "visibility"));
   EXPECT_TRUE(MessageDifferencer::Equals(SettingsToProto(settings), EverySetting()));
 }

@@ -226,6 +226,95 @@ TEST_F(WatchTest, BigStatesComeInSeveralMessages) {
   EXPECT_EQ(values.at(1).size(), 7u);
 }
 
+// What a client makes of messages: the log, by index. Each record may come once alone.
+std::vector<v1::CacheRecord> AssembleRecords(const std::vector<v1::WatchJobResponse>& messages,
+                                             std::vector<v1::CacheRecord> log = {}) {
+  for (const auto& message : messages) {
+    for (const v1::RecordUpdate& update : message.records()) {
+      if (update.records_size() > 0) {
+        EXPECT_EQ(update.first(), log.size());
+        log.insert(log.end(), update.records().begin(), update.records().end());
+      }
+      for (int i = 0; i < update.radius_size(); i += 2) {
+        v1::CacheRecord& record = log.at(update.first() + static_cast<std::size_t>(i) / 2);
+        record.clear_radius();
+        record.add_radius(update.radius(i)), record.add_radius(update.radius(i + 1));
+      }
+    }
+  }
+  return log;
+}
+
+v1::RenderResult Result(LoopbackServer& server, const std::string& name) {
+  v1::GetResultRequest request;
+  request.set_name(name);
+  TestContext context;
+  const auto reader = server.render().GetResult(&context, request);
+  v1::GetResultResponse chunk;
+  std::string bytes;
+  while (reader->Read(&chunk)) bytes += chunk.data();
+  EXPECT_TRUE(reader->Finish().ok());
+  v1::RenderResult result;
+  EXPECT_TRUE(result.ParseFromString(bytes));
+  return result;
+}
+
+void ExpectEqualLogs(const std::vector<v1::CacheRecord>& log, const v1::RenderResult& result) {
+  ASSERT_EQ(log.size(), static_cast<std::size_t>(result.records_size()));
+  for (std::size_t i = 0; i < log.size(); ++i)
+    EXPECT_EQ(log[i].SerializeAsString(), result.records(static_cast<int>(i)).SerializeAsString()) << i;
+}
+
+TEST_F(WatchTest, TheLogOfRecordsIsThatOfTheResultForEveryWatcher) {
+  renderings_.set_records_per_step(3);
+  LoopbackServer server(Options());
+  renderings_.Hold();
+  const std::string name = Create(server, {10});
+  Watch all(server.render(), name), leaver(server.render(), name);
+  renderings_.Allow(1);
+  std::vector<v1::WatchJobResponse> seen;
+  v1::WatchJobResponse message;
+  while (AssembleRecords(seen).empty() && leaver.Next(message)) seen.push_back(message);
+  leaver.Cancel();
+  const std::vector<v1::CacheRecord> known = AssembleRecords(seen);
+  renderings_.Allow(2);
+  Watch late(server.render(), name);
+  v1::WatchJobResponse early;
+  ASSERT_TRUE(late.Next(early));
+  renderings_.Release();
+  Watch resumed(server.render(), name, seen.back().epoch(), seen.back().sequence());
+  const auto resumed_messages = resumed.Rest();
+  std::vector<v1::WatchJobResponse> late_messages = late.Rest();
+  late_messages.insert(late_messages.begin(), early);
+  const v1::RenderResult result = Result(server, name);
+  ASSERT_EQ(result.records_size(), 3 * kSteps);
+  ExpectEqualLogs(AssembleRecords(all.Rest()), result);
+  ExpectEqualLogs(AssembleRecords(late_messages), result);
+  ExpectEqualLogs(AssembleRecords(resumed_messages, known), result);
+  for (const auto& update : resumed_messages) {
+    for (const v1::RecordUpdate& records : update.records()) {
+      if (records.first() < known.size()) {
+        EXPECT_EQ(records.records_size(), 0) << "sent twice";
+      }
+    }
+  }
+  ExpectEqualLogs(AssembleRecords(Watch(server.render(), name).Rest()), result);
+}
+
+TEST_F(WatchTest, ALongLogComesInSeveralMessages) {
+  renderings_.set_records_per_step(5000);
+  LoopbackServer server(Options());
+  const std::string name = Create(server, {10});
+  Watch(server.render(), name).Rest();
+  const auto messages = Watch(server.render(), name).Rest();
+  ASSERT_GT(messages.size(), 2u);
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    EXPECT_EQ(messages[i].more(), i + 1 < messages.size());
+    EXPECT_LE(messages[i].ByteSizeLong(), 512u << 10);
+  }
+  ExpectEqualLogs(AssembleRecords(messages), Result(server, name));
+}
+
 TEST_F(WatchTest, ASlowReaderGetsFewerAndNewerMessages) {
   FakeRenderings endless(1'000'000);
   ServerOptions options;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 #include <utility>
 
@@ -24,6 +25,7 @@ class FakeRenderings::Fake final : public Rendering {
     progress.fraction = static_cast<double>(steps_) / owner_.total_;
     progress.samples = 16.0 * steps_;
     progress.rays = 100.0 * steps_;
+    progress.records = steps_ * owner_.records_per_step_;
     return progress;
   }
   std::shared_ptr<const Field> Snapshot() const override {
@@ -38,6 +40,13 @@ class FakeRenderings::Fake final : public Rendering {
       field->probes.push_back(std::move(probe));
     }
     field->rays = 100.0 * steps_;
+    for (int i = 0; i < steps_ * owner_.records_per_step_; ++i) {
+      RecordField& record = field->records.emplace_back();
+      record.curve = "floor";
+      record.irradiance.assign(static_cast<std::size_t>(scene_->channels()), i);
+      record.wave = static_cast<std::uint32_t>(i / owner_.records_per_step_);
+      record.left_radius = record.right_radius = std::ldexp(1, -steps_);
+    }
     return field;
   }
 

@@ -23,6 +23,8 @@ class FakeRenderings {
   using OnStep = std::function<void(const std::string& scene, int steps, Executor&, const Cancellation& cancellation)>;
 
   explicit FakeRenderings(int total_steps) : total_(total_steps) {}
+  // Records that each step adds to the log; every step halves all radii. Default: none.
+  void set_records_per_step(int records) { records_per_step_ = records; }
   void set_on_step(OnStep on_step) { on_step_ = std::move(on_step); }
 
   void set_total_steps(int total_steps) { total_ = total_steps; }
@@ -46,6 +48,7 @@ class FakeRenderings {
   bool TakeStep(const std::string& scene, const Cancellation& cancellation);
 
   int total_;
+  int records_per_step_ = 0;
   OnStep on_step_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -118,6 +118,42 @@ TEST_F(WatchTest, ABrokenStreamIsTakenUpWhereItEnded) {
   EXPECT_THAT(service_.cursors_, ElementsAre(std::pair(0, 0), std::pair(5, 3), std::pair(5, 3)));
 }
 
+// Adds records [first, first + count) of a log in which the irradiance of each is its index.
+void AddRecords(std::uint32_t first, std::uint32_t count, v1::WatchJobResponse& update) {
+  v1::RecordUpdate& records = *update.add_records();
+  records.set_first(first);
+  for (std::uint32_t i = first; i < first + count; ++i) records.add_records()->add_irradiance(i);
+}
+
+TEST_F(WatchTest, RecordsOfAStateThatBreaksOffAreToldOnce) {
+  service_.scripts_ = {[](ServerContext*, Scripted::Writer* writer) {
+                         v1::WatchJobResponse half = Update(3, v1::Job::SUCCEEDED, 1);
+                         half.set_more(true);
+                         AddRecords(0, 2, half);
+                         writer->Write(half);
+                         return kGone;
+                       },
+                       [](ServerContext*, Scripted::Writer* writer) {
+                         v1::WatchJobResponse half = Update(3, v1::Job::SUCCEEDED, 1);
+                         half.set_more(true);
+                         AddRecords(0, 3, half);
+                         writer->Write(half);
+                         v1::WatchJobResponse rest = Update(3, v1::Job::SUCCEEDED, 1);
+                         rest.clear_job();
+                         AddRecords(3, 2, rest);
+                         writer->Write(rest);
+                         return Status::OK;
+                       }};
+  std::vector<double> records;
+  options_.on_record = [&](std::uint32_t index, const v1::CacheRecord& record) {
+    EXPECT_EQ(index, records.size());
+    records.push_back(record.irradiance(0));
+    return absl::OkStatus();
+  };
+  ASSERT_TRUE(WatchJob(*connection_, "jobs/x", options_).ok());
+  EXPECT_THAT(records, ElementsAre(0, 1, 2, 3, 4));
+}
+
 TEST_F(WatchTest, ASilentStreamIsLeft) {
   options_.silence = std::chrono::milliseconds(50);
   service_.scripts_ = {[](ServerContext* context, Scripted::Writer* writer) {

@@ -30,6 +30,13 @@ TEST(ProgressLine, SaysAllThatIsKnown) {
             "penumbra [############------------]  50 %  error 1.3 %  12.4 M rays/s  3.0 s left");
 }
 
+TEST(ProgressLine, CountsRecords) {
+  v1::Job job = Running(0.5);
+  job.mutable_progress()->clear_rays();
+  job.mutable_progress()->set_records(132);
+  EXPECT_EQ(ProgressLine(job, 0), "penumbra  50 %  error 1.3 %  132 records  3.0 s left");
+}
+
 TEST(ProgressLine, LeavesOutWhatIsUnknown) {
   v1::Job job = Running(0.1);
   job.clear_progress();

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_SERVICE_KNOWN_RECORDS_H_
+#define FLATLIGHT_SERVER_SERVICE_KNOWN_RECORDS_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/render/plan.h"
+#include "flatlight/v1/render_service.pb.h"
+#include "server/store/job_store.h"
+
+namespace flatlight {
+
+struct TakenRecords {
+  std::shared_ptr<const std::vector<RecordField>> records;
+  std::string checksum;
+};
+
+// The records of the job that a request names, with their seal.
+absl::StatusOr<v1::KnownRecords> RecordsOfJob(const v1::KnownRecords& known, JobStore& jobs);
+
+// The records that a request brings for a plan. An error if they are damaged, or are of another world or gather than
+// the plan's.
+absl::StatusOr<TakenRecords> TakeRecords(const v1::KnownRecords& known, const Scene& scene, const Plan& plan);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SERVICE_KNOWN_RECORDS_H_
