@@ -80,7 +80,11 @@ RayTracingRendering::RayTracingRendering(std::shared_ptr<const Scene> scene, std
   options.end_black_paths = plan.Takes(skip::kBlackPaths);
   ExactOptions exact;
   exact.derivatives = orders_ - 1;
-  for (const Receiver* point : PointsOfProbes(*scene_)) points_.push_back(MovedOnward(*point, *caster).receiver);
+  for (const Receiver* point : PointsOfProbes(*scene_)) {
+    const OnwardPoint onward = MovedOnward(*point, *caster);
+    points_.push_back(onward.receiver);
+    missed_.push_back(MissedAtHorizon(onward, *scene_));
+  }
   tree_.emplace(std::move(caster), options);
   if (scene_->traits().lights > 0) lights_.emplace(tree_->caster(), exact);
   BeginPass(last_rays_ > 0 ? std::min(kFirstRays, last_rays_) : kFirstRays);
@@ -191,12 +195,17 @@ void RayTracingRendering::FinishPoint(std::size_t point, const Gathered* gathere
   // What one ray more on the brightest thing changes, there where the nearest is.
   const double step = brightest_ * 2.0 / pass_rays_;
   const std::array<double, kQuantities> steps = {step, 2 * step * steepest, 6 * step * steepest * steepest, step};
+  // Of light within an angle of the horizon irradiance has half the square, rotation the angle itself.
+  const double missed = brightest_ * missed_[point];
+  const std::array<double, kQuantities> misses = {missed, 2 * missed * steepest, 6 * missed * steepest * steepest,
+                                                  brightest_ * std::sqrt(missed_[point])};
   std::array<double, kReplicates> values;
   for (std::size_t order = 0; order < kQuantities; ++order) {
     if (!Computes(static_cast<int>(order))) continue;
     for (int c = 0; c < kMaxChannels; ++c) {
       for (std::size_t r = 0; r < kReplicates; ++r) values[r] = gathered[r].value[order][c];
-      const MeanEstimate mean = EstimateMean(values, steps[order]);
+      MeanEstimate mean = EstimateMean(values, steps[order]);
+      mean.rounding = misses[order];
       estimate.value[order][c] = mean.mean;
       estimate.error[order][c] = mean.StandardError();
     }

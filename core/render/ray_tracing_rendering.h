@@ -86,6 +86,7 @@ class RayTracingRendering final : public Rendering {
   int max_threads_;
   double brightest_ = 0;  // Largest radiance of what rays may meet.
   std::vector<Receiver> points_;
+  std::vector<double> missed_;  // By point: MissedAtHorizon.
   std::vector<std::size_t> probe_of_point_;
   std::vector<Estimate> estimates_;
   std::vector<Decision> decisions_;

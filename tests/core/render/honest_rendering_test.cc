@@ -217,9 +217,17 @@ TEST(HonestRenderingTest, WhatRaysMissAtTheHorizonOfACornerIsStated) {
   SceneMaker maker;
   maker.Polyline("ridge", {{-0.8, -0.6}, {0, 0}, {1, 0}}, false).Probe("ridge", 1);
   maker.Segment("lamp", {-1, 5e-4}, {-1, 0}, {.radiance = {1}});
-  const ProbeField field = Render(maker.Build(), Sampled(1024)).field->probes[0];
+  const std::shared_ptr<const Scene> scene = maker.Build();
+  const ProbeField field = Render(scene, Sampled(1024)).field->probes[0];
   EXPECT_NEAR(field.irradiance[0], 1.25e-7, 6 * field.standard_error[0]);
   EXPECT_LT(field.standard_error[0], 1e-6);
+  // Rotation misses more than irradiance.
+  Settings settings = Sampled(1 << 15);
+  settings.method = Method::kRayTracing;
+  settings.derivatives = Derivatives::kGradient;
+  const ProbeField turned = Render(scene, settings).field->probes[0];
+  EXPECT_NEAR(turned.rotation_gradient[0], -5e-4, 2 * turned.rotation_gradient_error[0]);
+  EXPECT_LT(turned.rotation_gradient_error[0], 2e-3);
 }
 
 }  // namespace
