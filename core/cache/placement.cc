@@ -121,6 +121,7 @@ std::vector<double> Placement::FirstOf(std::uint32_t track, std::size_t count) c
 
 void Placement::ClampNeighbours(const std::vector<CacheRecord*>& track, double extent) const {
   std::vector<double> radius;
+  radius.reserve(track.size());
   for (const CacheRecord* record : track) radius.push_back(RadiusFor(*record, options_.tolerance, extent));
   std::vector<double> clamped = radius;
   for (std::size_t i = 1; i < track.size(); ++i)

@@ -294,7 +294,7 @@ std::string ProgressiveSampling::Checkpoint(std::size_t most_bytes) const {
 
 bool ProgressiveSampling::Resume(std::string_view checkpoint) {
   StateReader reader(checkpoint);
-  Elapsed& elapsed = resumed_.emplace();
+  Elapsed& elapsed = resumed_.emplace(Elapsed{});
   reader(elapsed.since_start, elapsed.since_round_start);
   State(*this, reader);
   return reader.AtEnd();

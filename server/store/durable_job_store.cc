@@ -62,7 +62,7 @@ absl::StatusOr<JobRecord> DurableJobStore::Insert(JobRecord job, const Submissio
                                                   const std::optional<RequestKey>& key) {
   const JobId id = job.spec->id;
   // In memory first: nobody may find it in the archive and not there.
-  const auto inserted = memory_.Insert(job, submission, std::nullopt);
+  auto inserted = memory_.Insert(job, submission, std::nullopt);
   if (!inserted.ok()) return inserted;
   const auto made = archive_.Insert(id, job.spec->owner, format_.WriteMessage(job), submission, key, Now());
   if (!absl::IsAlreadyExists(made.status())) NoteHealth(made.status());

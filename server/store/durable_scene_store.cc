@@ -8,7 +8,7 @@ namespace flatlight {
 
 absl::Status DurableSceneStore::Restore() {
   std::vector<std::pair<std::string, std::string>> scenes;  // Hash and title.
-  const absl::Status listed = storage_.Read([&](Database& database) -> absl::Status {
+  absl::Status listed = storage_.Read([&](Database& database) -> absl::Status {
     Statement rows = database.Prepare("SELECT sha256, title FROM scenes ORDER BY number");
     while (true) {
       const auto row = rows.Step();
@@ -73,7 +73,7 @@ void DurableSceneStore::SetTitle(const std::string& sha256, const std::string& t
 }
 
 absl::Status DurableSceneStore::Delete(const std::string& sha256) {
-  const absl::Status written = storage_.Write([&](Storage::Writing& writing) -> absl::Status {
+  absl::Status written = storage_.Write([&](Storage::Writing& writing) -> absl::Status {
     absl::Status removed = writing.Prepare("DELETE FROM scenes WHERE sha256 = ?").Bind(std::string_view(sha256)).Run();
     if (!removed.ok() || writing.database().changed_rows() == 0) return removed;
     return writing.Release(sha256);

@@ -186,7 +186,7 @@ absl::Status JobArchive::DropEnded(WallTime before) {
 
 absl::Status JobArchive::DropRequests(WallTime before) {
   bool any = false;
-  const absl::Status looked = storage_.Read([&](Database& database) {
+  absl::Status looked = storage_.Read([&](Database& database) {
     const auto row = database.Prepare("SELECT 1 FROM requests WHERE time < ?").Bind(SecondsOf(before)).Step();
     any = row.ok() && *row;
     return row.status();

@@ -15,4 +15,8 @@ absl::Status RequestIdReused(const RequestKey& key, const JobId& job) {
                        " with other contents; use a new one for a new job");
 }
 
+// By value, for those that keep them.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
+void JobStore::SaveCheckpoint(const JobId& /*id*/, std::string /*checkpoint*/, std::function<void(double)> /*saved*/) {}
+
 }  // namespace flatlight

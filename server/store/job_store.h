@@ -69,7 +69,7 @@ class JobStore {
   // The result as it was written; null if it has not been.
   virtual absl::StatusOr<std::shared_ptr<const std::string>> WrittenResult(const JobId& /*id*/) { return nullptr; }
   // Writes a checkpoint soon, on another thread, and tells how long it worked on it. s.
-  virtual void SaveCheckpoint(const JobId& /*id*/, std::string /*checkpoint*/, std::function<void(double)> /*saved*/) {}
+  virtual void SaveCheckpoint(const JobId& id, std::string checkpoint, std::function<void(double)> saved);
 };
 
 // NOT_FOUND.

@@ -59,8 +59,8 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> migrations = {kJobs, kScenes};
-  return migrations;
+  static const std::vector<std::string> kMigrations = {kJobs, kScenes};
+  return kMigrations;
 }
 
 absl::Status Migrate(Database& database, std::size_t newest) {
