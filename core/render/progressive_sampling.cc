@@ -21,6 +21,8 @@ constexpr double kDarkest = 0.01;
 constexpr std::size_t kNeighbours = 16;
 
 Clock::Time Later(Clock::Time time, Clock::Duration duration) {
+  // A time before the clock's zero, of a resumed rendering, has more room than a duration can hold.
+  if (time.time_since_epoch() <= Clock::Duration::zero()) return time + duration;
   return duration > Clock::Time::max() - time ? Clock::Time::max() : time + duration;
 }
 
