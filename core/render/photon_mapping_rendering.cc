@@ -99,7 +99,7 @@ PhotonMappingRendering::PhotonMappingRendering(std::shared_ptr<const Scene> scen
       options.max_bounces = settings_.max_bounces;
       options.end_black_paths = plan.Takes(skip::kBlackPaths);
       tree_.emplace(caster_, options);
-      for (const Point& point : points_) gather_from_.push_back(MovedOnward(*point.receiver, *caster_));
+      for (const Point& point : points_) gather_from_.push_back(MovedOnward(*point.receiver, *caster_).receiver);
     }
   }
   if (gathers_ && !reflects_) return;

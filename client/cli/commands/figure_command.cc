@@ -116,7 +116,9 @@ CommandResult DrawPhotonMap(const PhotonFigure& figure, const CommandLine& line,
   v1::Settings settings;
   settings.set_method(v1::Settings::REFERENCE);
   settings.set_derivatives(v1::Settings::NONE);
-  const auto reference = RenderFirstProbe(**session, figure.scene, settings, silent);
+  v1::SceneSource source;
+  source.set_name(std::string("scenes/") + figure.scene);
+  const auto reference = RenderFirstProbe(**session, source, settings, silent);
   if (!reference.ok()) return (*session)->Explain(reference.status());
   v1::RenderResult all = *reference;
   all.set_scene(figure.name);
@@ -138,7 +140,7 @@ CommandResult DrawPhotonMap(const PhotonFigure& figure, const CommandLine& line,
   v1::Settings density = settings;
   density.clear_samples();
   density.set_final_gather(false);
-  const auto chosen = RenderFirstProbe(**session, figure.scene, density, silent);
+  const auto chosen = RenderFirstProbe(**session, source, density, silent);
   if (!chosen.ok()) return (*session)->Explain(chosen.status());
   const auto chosen_error = IrradianceError(*chosen, *reference);
   if (!chosen_error.ok()) return chosen_error.status();
@@ -151,7 +153,7 @@ CommandResult DrawPhotonMap(const PhotonFigure& figure, const CommandLine& line,
     for (const double bandwidth : figure.bandwidths) {
       density.set_kernel(kernel);
       density.set_bandwidth(bandwidth);
-      const auto result = RenderFirstProbe(**session, figure.scene, density, silent);
+      const auto result = RenderFirstProbe(**session, source, density, silent);
       if (!result.ok()) return (*session)->Explain(result.status());
       const auto error = IrradianceError(*result, *reference);
       if (!error.ok()) return error.status();
@@ -163,7 +165,7 @@ CommandResult DrawPhotonMap(const PhotonFigure& figure, const CommandLine& line,
   }
   add("best density", best_name, best, best_error);
   settings.set_derivatives(v1::Settings::NONE);
-  const auto gathered = RenderFirstProbe(**session, figure.scene, settings, silent);
+  const auto gathered = RenderFirstProbe(**session, source, settings, silent);
   if (!gathered.ok()) return (*session)->Explain(gathered.status());
   const auto gathered_error = IrradianceError(*gathered, *reference);
   if (!gathered_error.ok()) return gathered_error.status();

@@ -27,7 +27,8 @@ WidthChoice ChooseWidth(const WidthLadder& ladder) {
   for (double width = ladder.widest; usable < count; ++usable, width /= WidthLadder::kRatio) {
     const auto& densities = ladder.densities[usable];
     const auto filled = std::count_if(densities.begin(), densities.end(), [](double d) { return d != 0; });
-    const bool expected = usable > 0 && mean[usable - 1] * 2 * width >= kExpectedPhotons * ladder.photon;
+    // Less than none, at an end, is as wrong as too much.
+    const bool expected = usable > 0 && std::abs(mean[usable - 1]) * 2 * width >= kExpectedPhotons * ladder.photon;
     if (usable > 0 && filled < kFewestReplicates && !expected) break;
     const double step = static_cast<double>(kReplicates) * ladder.photon / (2 * width);
     const MeanEstimate estimate = EstimateMean(densities, step);

@@ -99,7 +99,7 @@ void RayTree::VisitLights(const Vertex& vertex, std::uint32_t depth, std::uint64
   std::vector<ChainedLight> chained;
   chains_->Find(ChainEffort::kCoarse, vertex.at, vertex.normal, most_links, growth.cast, chained);
   chains_->FindByChance(ChainEffort::kCoarse, vertex.at, vertex.normal, most_links, Number(key, kChains), growth.cast,
-                       chained);
+                        chained);
   for (const ChainedLight& way : chained) visit(way.light);
 }
 

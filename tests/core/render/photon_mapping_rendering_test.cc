@@ -226,6 +226,33 @@ TEST(PhotonMappingTest, FindsWhatLightsSendOverMirrors) {
   EXPECT_THAT(diagnostics.kept()[0].message, HasSubstr("points that lie on none"));
 }
 
+// Over mirrors, lamps are found by rays and lights without a surface by photons, and neither by both; and what a mirror
+// shows has a bounce less to come from.
+TEST(PhotonMappingTest, CountsLightOverMirrorsOnce) {
+  SceneMaker maker;
+  maker.Segment("floor", {-1, 0}, {1, 0}, {.reflectance = {0.9}}).Probe("floor", 40);
+  maker.Segment("mirror", {2, 1}, {-2, 1}, {.material = MirrorDescription{{0.9}}});
+  maker.Segment("gloss", {-1, 1}, {-1, 0}, {.material = PhongDescription{{0.8}, 10}});
+  maker.Segment("lamp", {0.8, 0.3}, {0.4, 0.3}, {.radiance = {2}, .two_sided = true});
+  maker.Light(PointLightDescription{{-0.4, 0.4}, {1}});
+  const auto scene = maker.Build();
+  for (const std::optional<std::uint32_t> bounces : {std::optional<std::uint32_t>(2), std::optional<std::uint32_t>()}) {
+    Settings paths = Sampled(1u << 15);
+    paths.max_bounces = bounces;
+    const auto truth = Render(scene, paths).field;
+    Settings settings = Photons(200000, true);
+    settings.max_bounces = bounces;
+    settings.samples = 2048;
+    const auto field = Render(scene, settings).field;
+    double noise = 0;
+    for (const double error : truth->probes[0].standard_error) noise += error / 40;
+    const Deviation deviation = DeviationFrom(truth->probes[0].irradiance, *field, noise);
+    EXPECT_LT(deviation.rms, 0.01);
+    // One point is beside the edge of the lamp's shadow in the light that the mirror throws: densities round it off.
+    EXPECT_LT((40 * deviation.mean_square - deviation.largest * deviation.largest) / 39, 1.5);
+  }
+}
+
 // However wide a kernel is, it does not reach through a wall, around a corner, or to the other side.
 TEST(PhotonMappingTest, NothingLeaks) {
   SceneMaker maker;
