@@ -27,6 +27,7 @@ struct ProbeField {
   std::vector<double> samples;           // Paths; one value a point.
   std::vector<double> irradiance_error;  // W/m; bounds, of a method that states one for each value.
   std::vector<double> estimated_error;   // W/m; of a biased method, no bound.
+  std::vector<double> estimated_bias;    // W/m; of a biased method that has standard errors beside, no bound.
 };
 
 // A cache record, in world units. Arrays by channel; one that is not known is empty.
@@ -57,6 +58,7 @@ struct Field {
   std::vector<ProbeField> probes;
   std::optional<double> error_bound;  // Deterministic methods: no irradiance is further from the truth. W/m.
   double rays = 0;
+  std::optional<double> photons;  // Paths of light from its sources, of photon mapping.
   // In the order in which they were made: a newer field has more of them, and may have other radii.
   std::vector<RecordField> records;
   std::size_t reused_records = 0;  // The first so many are of an earlier job.

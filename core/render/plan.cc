@@ -9,6 +9,7 @@
 
 #include "core/plane/ray_tracing/ray_tree.h"
 #include "core/render/light_paths.h"
+#include "core/render/photon_plan.h"
 #include "core/render/skips.h"
 
 namespace flatlight {
@@ -75,12 +76,12 @@ void CheckDerivatives(const Scene& scene, const Settings& settings, Diagnostics&
   }
   // Where radiance varies along what appears behind an edge, the second derivative has a term that rays do not tell
   // (THEORY 18 B6).
-  if (settings.method == Method::kRayTracing && settings.derivatives == Derivatives::kHessian &&
-      !DirectLightOnly(scene, settings)) {
-    diagnostics.Add(
-        "settings.derivatives",
-        "ray-tracing gives the Hessian of direct light alone, and this scene reflects: ask for the gradient, "
-        "set max bounces to 0, or use reference");
+  const bool gathers = settings.method == Method::kRayTracing || settings.method == Method::kPhotonMapping;
+  if (gathers && settings.derivatives == Derivatives::kHessian && !DirectLightOnly(scene, settings)) {
+    diagnostics.Add("settings.derivatives",
+                    NameOf(settings) +
+                        " gives the Hessian of direct light alone, and this scene reflects: ask for the gradient, "
+                        "set max bounces to 0, or use reference");
   }
   if (settings.method == Method::kExact && settings.derivatives.has_value() && !none && PicturesAlone(scene)) {
     diagnostics.Add("settings.derivatives", "pictures and cameras have none: leave this out");
@@ -186,6 +187,7 @@ void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& d
 void CheckMethod(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   CheckDerivatives(scene, settings, diagnostics);
   CheckCaching(scene, settings, diagnostics);
+  CheckPhotonMapping(scene, settings, diagnostics);
   if (settings.method != Method::kPathTracing && settings.method != Method::kExact && scene.traits().pixels > 0) {
     diagnostics.Add("settings.method", NameOf(settings) +
                                            " gives irradiance at points, and a probe of this scene is a "
@@ -253,6 +255,7 @@ void FillMethodDefaults(const Scene& scene, Plan& plan) {
   }
   if (!settings.seed.has_value()) settings.seed = 0;
   if (settings.method == Method::kIrradianceCaching) return;
+  if (settings.method == Method::kPhotonMapping) return FillPhotonDefaults(scene, settings);
   const bool open_ended = settings.target_error.has_value() || settings.time_limit.has_value();
   if (settings.method == Method::kRayTracing) {
     if (!settings.derivatives.has_value()) {
@@ -317,7 +320,34 @@ double ExpectedTree(const Scene& scene, const Plan& plan, double samples) {
   return rays;
 }
 
+void AddPhotonPasses(const Scene& scene, Plan& plan) {
+  const Settings& settings = plan.settings;
+  const bool gathers = *settings.final_gather, direct = DirectLightOnly(scene, settings);
+  PlanPass points;
+  points.points = static_cast<double>(scene.traits().probe_points);
+  if (gathers && direct) {
+    points.name = "direct light in closed form";
+    plan.passes.push_back(points);
+    return;
+  }
+  PlanPass photons;
+  photons.name = (settings.photons ? Text(*settings.photons) + " " : "") +
+                 "photons from where light shines, sorted along the curves on which they arrive";
+  if (!plan.Takes(skip::kEmission))
+    photons.expected_rays = settings.photons.value_or(0) * ExpectedVertices(scene, plan);
+  plan.passes.push_back(photons);
+  points.name = gathers ? "direct light in closed form, and rays that look up densities of photons where they arrive"
+                        : "densities of photons at the points";
+  if (gathers) {
+    points.samples = settings.photons ? std::ceil(*settings.samples / kBlockSamples) * kBlockSamples : 0;
+    // A quarter more tells the bias.
+    if (!plan.Takes(skip::kEmission)) points.expected_rays = 1.25 * points.points * points.samples;
+  }
+  plan.passes.push_back(points);
+}
+
 void AddPasses(const Scene& scene, Plan& plan) {
+  if (plan.settings.method == Method::kPhotonMapping) return AddPhotonPasses(scene, plan);
   PlanPass pass;
   pass.points = static_cast<double>(scene.traits().probe_points);
   if (plan.settings.method == Method::kExact) {
@@ -375,6 +405,7 @@ std::string Summary(const Scene& scene, const Plan& plan) {
   if (plan.settings.method == Method::kRayTracing) text = "Ray tracing of " + Bounces(plan);
   if (plan.settings.method == Method::kReference) text = "Reference of " + Bounces(plan);
   if (plan.settings.method == Method::kIrradianceCaching) text = "Irradiance caching of " + Bounces(plan);
+  if (plan.settings.method == Method::kPhotonMapping) text = "Photon mapping of " + Bounces(plan);
   if (plan.settings.derivatives == Derivatives::kGradient) text += " and its gradient";
   if (plan.settings.derivatives == Derivatives::kHessian) text += " with gradient and Hessian";
   text += " at ";
@@ -384,6 +415,7 @@ std::string Summary(const Scene& scene, const Plan& plan) {
     if (seen > 0) text += (others > 0 ? " and " : "") + std::to_string(seen) + " pixels of cameras";
   }
   if (pixels > 0) text += (points > 0 ? " and in " : "") + std::to_string(pixels) + " pixels";
+  if (plan.settings.method == Method::kPhotonMapping) return text + HowPhotonsTell(scene, plan.settings) + ".";
   if (plan.settings.method == Method::kIrradianceCaching) {
     text +=
         plan.settings.max_records
@@ -409,8 +441,8 @@ std::string Summary(const Scene& scene, const Plan& plan) {
 }  // namespace
 
 const std::vector<std::string>& MethodNames() {
-  static const auto& names =
-      *new std::vector<std::string>{"exact", "path-tracing", "ray-tracing", "reference", "irradiance-caching"};
+  static const auto& names = *new std::vector<std::string>{"exact",     "path-tracing",       "ray-tracing",
+                                                           "reference", "irradiance-caching", "photon-mapping"};
   return names;
 }
 

@@ -65,7 +65,7 @@ struct Plan {
 // All names that Settings::no_skip may hold.
 const std::vector<std::string>& SkipNames();
 
-// "exact", "path-tracing", "reference".
+// As in the settings: "exact", "path-tracing" and so on.
 const std::vector<std::string>& MethodNames();
 
 // Absent if the settings have mistakes or don't suit the scene; `diagnostics` then says which ("settings.samples").

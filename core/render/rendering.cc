@@ -9,6 +9,7 @@
 #include "core/render/irradiance_caching_rendering.h"
 #include "core/render/joint_rendering.h"
 #include "core/render/path_tracing_rendering.h"
+#include "core/render/photon_mapping_rendering.h"
 #include "core/render/ray_tracing_rendering.h"
 #include "core/render/reference_rendering.h"
 #include "core/render/skips.h"
@@ -29,6 +30,9 @@ std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, co
   }
   if (plan.settings.method == Method::kRayTracing) {
     return std::make_unique<RayTracingRendering>(std::move(scene), std::move(caster), plan);
+  }
+  if (plan.settings.method == Method::kPhotonMapping) {
+    return std::make_unique<PhotonMappingRendering>(std::move(scene), std::move(caster), plan);
   }
   if (plan.settings.method == Method::kIrradianceCaching) {
     return std::make_unique<IrradianceCachingRendering>(std::move(scene), std::move(caster), plan);

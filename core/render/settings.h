@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "core/cache/error_control.h"
+#include "core/plane/photon_mapping/kernel.h"
 
 namespace flatlight {
 
-enum class Method : std::uint8_t { kExact, kPathTracing, kRayTracing, kReference, kIrradianceCaching };
+enum class Method : std::uint8_t { kExact, kPathTracing, kRayTracing, kReference, kIrradianceCaching, kPhotonMapping };
 enum class Derivatives : std::uint8_t { kNone, kGradient, kHessian };
 
 // What the caller asks for; absent means the method's default. See settings.proto for units and ranges.
@@ -39,6 +40,12 @@ struct Settings {
   std::optional<Gather> gather;
   std::optional<bool> neighbour_clamping;
   std::optional<bool> overture;
+  // Of photon mapping.
+  std::optional<std::uint32_t> photons;
+  std::optional<bool> final_gather;
+  std::optional<double> bandwidth;  // m
+  std::optional<std::uint32_t> neighbours;
+  std::optional<Kernel> kernel;
   std::vector<std::string> no_skip;
 };
 

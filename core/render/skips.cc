@@ -94,8 +94,10 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
                                            : "the environment shines");
   const bool caching = settings.method == Method::kIrradianceCaching;
   const bool branching = settings.method == Method::kRayTracing || caching;
-  decisions.Add(skip::kColour, traits.grey && !branching, "all spectra are grey: one channel is computed",
-                caching     ? "records hold all channels at once"
+  const bool photons = settings.method == Method::kPhotonMapping;
+  decisions.Add(skip::kColour, traits.grey && !branching && !photons, "all spectra are grey: one channel is computed",
+                photons     ? "photons carry all channels at once"
+                : caching   ? "records hold all channels at once"
                 : branching ? "branching rays carry all channels at once"
                             : "some spectra are coloured");
   if (settings.method == Method::kReference) {
@@ -120,6 +122,15 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
     return decisions.Take();
   }
   const bool direct = DirectLightOnly(scene, settings);
+  if (settings.method == Method::kPhotonMapping) {
+    const std::string reason = "photons find out where light goes";
+    decisions.Add(skip::kVisibility, false, "", reason);
+    decisions.Add(skip::kBounces, false, "", direct ? "direct light is all that there is or is asked for" : reason);
+    AddBlackPaths(scene, direct || !*settings.final_gather, decisions);
+    decisions.Add(skip::kUnseenEmitters, false, "", reason);
+    decisions.Add(skip::kConvergedPoints, false, "", "all points share their photons: they end together");
+    return decisions.Take();
+  }
   const LightWays ways(scene, direct);
   if (branching) {
     const bool rays = !caching || settings.gather == Gather::kRayTracing;

@@ -72,6 +72,7 @@ void FillProbeValues(const Field& field, int channels, std::size_t probe, std::s
   AddSlice(source.standard_error, first, count, width, *out.mutable_standard_error());
   AddSlice(source.irradiance_error, first, count, width, *out.mutable_irradiance_error());
   AddSlice(source.estimated_error, first, count, width, *out.mutable_estimated_error());
+  AddSlice(source.estimated_bias, first, count, width, *out.mutable_estimated_bias());
   AddSlice(source.gradient, first, count, width, *out.mutable_gradient());
   AddSlice(source.gradient_error, first, count, width, *out.mutable_gradient_error());
   AddSlice(source.hessian, first, count, width, *out.mutable_hessian());
@@ -100,6 +101,7 @@ v1::RenderResult ResultToProto(const SceneOutline& scene, const Field& field) {
   FillRecords(field.records, *result.mutable_records());
   if (field.reused_records > 0)
     result.mutable_statistics()->set_reused_records(static_cast<double>(field.reused_records));
+  if (field.photons) result.mutable_statistics()->set_photons(*field.photons);
   result.mutable_statistics()->set_rays(field.rays);
   if (field.error_bound) result.mutable_statistics()->set_error_bound(*field.error_bound);
   return result;

@@ -66,6 +66,7 @@ Field FieldOf(const v1::RenderResult& result) {
     probe.standard_error = ValuesOf(source.standard_error());
     probe.irradiance_error = ValuesOf(source.irradiance_error());
     probe.estimated_error = ValuesOf(source.estimated_error());
+    probe.estimated_bias = ValuesOf(source.estimated_bias());
     probe.gradient = ValuesOf(source.gradient());
     probe.gradient_error = ValuesOf(source.gradient_error());
     probe.hessian = ValuesOf(source.hessian());
@@ -76,6 +77,7 @@ Field FieldOf(const v1::RenderResult& result) {
   }
   for (const v1::CacheRecord& record : result.records()) field.records.push_back(RecordFromProto(record));
   field.reused_records = static_cast<std::size_t>(result.statistics().reused_records());
+  if (result.statistics().has_photons()) field.photons = result.statistics().photons();
   field.rays = result.statistics().rays();
   if (result.statistics().has_error_bound()) field.error_bound = result.statistics().error_bound();
   return field;

@@ -20,6 +20,8 @@ v1::Settings::Method ToProto(Method method) {
       return v1::Settings::REFERENCE;
     case Method::kIrradianceCaching:
       return v1::Settings::IRRADIANCE_CACHING;
+    case Method::kPhotonMapping:
+      return v1::Settings::PHOTON_MAPPING;
   }
   return v1::Settings::METHOD_UNSPECIFIED;
 }
@@ -52,6 +54,20 @@ v1::Settings::ErrorControl ToProto(ErrorControl control) {
       return v1::Settings::VISIBILITY_EVENTS;
   }
   return v1::Settings::ERROR_CONTROL_UNSPECIFIED;
+}
+
+v1::Settings::Kernel ToProto(Kernel kernel) {
+  switch (kernel) {
+    case Kernel::kBox:
+      return v1::Settings::BOX;
+    case Kernel::kTriangle:
+      return v1::Settings::TRIANGLE;
+    case Kernel::kEpanechnikov:
+      return v1::Settings::EPANECHNIKOV;
+    case Kernel::kBiweight:
+      return v1::Settings::BIWEIGHT;
+  }
+  return v1::Settings::KERNEL_UNSPECIFIED;
 }
 
 v1::Settings::Gather ToProto(Gather gather) {
@@ -111,6 +127,7 @@ Settings SettingsFromProto(const v1::Settings& proto, Diagnostics& diagnostics) 
   if (proto.formulation() == v1::Settings::ARC_LENGTH) settings.formulation = Formulation::kArcLength;
   if (proto.method() == v1::Settings::REFERENCE) settings.method = Method::kReference;
   if (proto.method() == v1::Settings::IRRADIANCE_CACHING) settings.method = Method::kIrradianceCaching;
+  if (proto.method() == v1::Settings::PHOTON_MAPPING) settings.method = Method::kPhotonMapping;
   if (proto.gather() == v1::Settings::FROM_REFERENCE) settings.gather = Gather::kReference;
   if (proto.gather() == v1::Settings::FROM_RAY_TRACING) settings.gather = Gather::kRayTracing;
   settings.error_control = FromProto(proto.error_control());
@@ -119,6 +136,12 @@ Settings SettingsFromProto(const v1::Settings& proto, Diagnostics& diagnostics) 
   if (proto.has_neighbour_clamping()) settings.neighbour_clamping = proto.neighbour_clamping();
   if (proto.has_overture()) settings.overture = proto.overture();
   if (proto.has_max_records()) settings.max_records = proto.max_records();
+  if (proto.has_photons()) settings.photons = proto.photons();
+  if (proto.has_final_gather()) settings.final_gather = proto.final_gather();
+  if (proto.has_bandwidth()) settings.bandwidth = proto.bandwidth();
+  if (proto.has_neighbours()) settings.neighbours = proto.neighbours();
+  for (const Kernel kernel : {Kernel::kBox, Kernel::kTriangle, Kernel::kEpanechnikov, Kernel::kBiweight})
+    if (proto.kernel() == ToProto(kernel)) settings.kernel = kernel;
   if (proto.has_samples()) settings.samples = proto.samples();
   if (proto.has_max_bounces()) settings.max_bounces = proto.max_bounces();
   if (proto.has_seed()) settings.seed = proto.seed();
@@ -150,6 +173,11 @@ v1::Settings SettingsToProto(const Settings& settings) {
   if (settings.neighbour_clamping) proto.set_neighbour_clamping(*settings.neighbour_clamping);
   if (settings.overture) proto.set_overture(*settings.overture);
   if (settings.max_records) proto.set_max_records(*settings.max_records);
+  if (settings.photons) proto.set_photons(*settings.photons);
+  if (settings.final_gather) proto.set_final_gather(*settings.final_gather);
+  if (settings.bandwidth) proto.set_bandwidth(*settings.bandwidth);
+  if (settings.neighbours) proto.set_neighbours(*settings.neighbours);
+  if (settings.kernel) proto.set_kernel(ToProto(*settings.kernel));
   for (const std::string& name : settings.no_skip) proto.add_no_skip(name);
   return proto;
 }

@@ -28,6 +28,7 @@ constexpr Quantity kQuantities[] = {
     {"samples", &ProbeField::samples},
     {"irradiance_error", &ProbeField::irradiance_error},
     {"estimated_error", &ProbeField::estimated_error},
+    {"estimated_bias", &ProbeField::estimated_bias},
 };
 
 absl::Status NotFinite(const std::string& what, double value) {

@@ -14,7 +14,7 @@ constexpr std::vector<double> ProbeField::*kArrays[] = {
     &ProbeField::hessian,           &ProbeField::hessian_error,
     &ProbeField::samples,           &ProbeField::irradiance_error,
     &ProbeField::rotation_gradient, &ProbeField::rotation_gradient_error,
-    &ProbeField::estimated_error};
+    &ProbeField::estimated_error,   &ProbeField::estimated_bias};
 
 // Whether the values of points [first, last) have equal bits.
 bool EqualValues(const ProbeField& a, const ProbeField& b, std::size_t points, std::size_t first, std::size_t last) {

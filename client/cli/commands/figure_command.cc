@@ -37,6 +37,15 @@ struct ConvergenceFigure {
   std::uint32_t seeds = 4;
 };
 
+// Photons on the first probe of a gallery scene: their density, and what a final gather makes of the same map.
+struct PhotonFigure {
+  const char* name = "photon-map";
+  const char* scene = "penumbra";
+  std::uint32_t photons = 100;
+  // m. The best of these and the default stands for the best that densities can do.
+  std::vector<double> bandwidths = {0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.2, 2, 4};
+};
+
 std::string Share(const std::optional<double>& relative) { return relative ? FormatPercent(*relative) : "-"; }
 
 // Rows of a table: how far a formulation's derivatives are from exact ones.
@@ -90,11 +99,90 @@ CommandResult DrawDerivatives(const DerivativesFigure& figure, const CommandLine
   return ExitCode::kDone;
 }
 
+// How far a result's irradiance is from that of another.
+absl::StatusOr<QuantityComparison> IrradianceError(const v1::RenderResult& found, const v1::RenderResult& truth) {
+  const auto comparison = Compare(found, truth, std::nullopt);
+  if (!comparison.ok()) return comparison.status();
+  return comparison->quantities.front();
+}
+
+CommandResult DrawPhotonMap(const PhotonFigure& figure, const CommandLine& line, Interruption& interruption) {
+  const auto outputs = OutputsOf(line.outputs, line.json);
+  if (!outputs.ok()) return outputs.status();
+  Console console = ConsoleFor(*outputs, line.quiet);
+  const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
+  if (!session.ok()) return session.status();
+  Console silent(Console::Answer::kMachine, true);
+  v1::Settings settings;
+  settings.set_method(v1::Settings::REFERENCE);
+  settings.set_derivatives(v1::Settings::NONE);
+  v1::SceneSource source;
+  source.set_name(std::string("scenes/") + figure.scene);
+  const auto reference = RenderFirstProbe(**session, source, settings, silent);
+  if (!reference.ok()) return (*session)->Explain(reference.status());
+  v1::RenderResult all = *reference;
+  all.set_scene(figure.name);
+  // They speak of one of the results only.
+  all.clear_settings();
+  all.clear_plan();
+  all.clear_statistics();
+  all.mutable_probes(0)->set_name("reference");
+  std::vector<std::vector<std::string>> rows = {{"METHOD", "BANDWIDTH", "RMS ERROR", "RELATIVE", "LARGEST"}};
+  const auto add = [&](const std::string& name, const std::string& bandwidth, const v1::RenderResult& result,
+                       const QuantityComparison& error) {
+    rows.push_back({name, bandwidth, FormatValue(error.rms), Share(error.relative_rms), FormatValue(error.largest)});
+    *all.add_probes() = result.probes(0);
+    all.mutable_probes(all.probes_size() - 1)->set_name(name);
+  };
+  settings = line.settings;
+  settings.set_method(v1::Settings::PHOTON_MAPPING);
+  if (!settings.has_photons()) settings.set_photons(figure.photons);
+  v1::Settings density = settings;
+  density.clear_samples();
+  density.set_final_gather(false);
+  const auto chosen = RenderFirstProbe(**session, source, density, silent);
+  if (!chosen.ok()) return (*session)->Explain(chosen.status());
+  const auto chosen_error = IrradianceError(*chosen, *reference);
+  if (!chosen_error.ok()) return chosen_error.status();
+  add("density", "chosen at each point", *chosen, *chosen_error);
+  v1::RenderResult best = *chosen;
+  QuantityComparison best_error = *chosen_error;
+  std::string best_name = "chosen at each point";
+  for (const auto kernel :
+       {v1::Settings::BOX, v1::Settings::TRIANGLE, v1::Settings::EPANECHNIKOV, v1::Settings::BIWEIGHT}) {
+    for (const double bandwidth : figure.bandwidths) {
+      density.set_kernel(kernel);
+      density.set_bandwidth(bandwidth);
+      const auto result = RenderFirstProbe(**session, source, density, silent);
+      if (!result.ok()) return (*session)->Explain(result.status());
+      const auto error = IrradianceError(*result, *reference);
+      if (!error.ok()) return error.status();
+      if (error->rms >= best_error.rms) continue;
+      best = *result;
+      best_error = *error;
+      best_name = FormatValue(bandwidth) + " m, " + OptionName(kernel);
+    }
+  }
+  add("best density", best_name, best, best_error);
+  settings.set_derivatives(v1::Settings::NONE);
+  const auto gathered = RenderFirstProbe(**session, source, settings, silent);
+  if (!gathered.ok()) return (*session)->Explain(gathered.status());
+  const auto gathered_error = IrradianceError(*gathered, *reference);
+  if (!gathered_error.ok()) return gathered_error.status();
+  add("final gather", "chosen", *gathered, *gathered_error);
+  console.Say(std::string(figure.name) + " (gallery:" + figure.scene + "): " + std::to_string(settings.photons()) +
+              " photons; a final gather has an RMS error " + FormatValue(best_error.rms / gathered_error->rms) +
+              " times smaller than the best density of the same map\n\n" + FormatTable(rows));
+  if (absl::Status written = WriteResult(all, *outputs, console, interruption); !written.ok()) return written;
+  return ExitCode::kDone;
+}
+
 }  // namespace
 
 std::vector<std::string> FigureNames() {
   std::vector<std::string> names;
   for (const DerivativesFigure& figure : kDerivatives) names.emplace_back(figure.name);
+  names.emplace_back(PhotonFigure().name);
   names.emplace_back(ConvergenceFigure().name);
   for (const std::string& name : CachingFigureNames()) names.push_back(name);
   return names;
@@ -105,6 +193,7 @@ CommandResult Figure(const CommandLine& line, Interruption& interruption) {
     if (line.figure == figure.name) return DrawDerivatives(figure, line, interruption);
   }
   if (const auto drawn = DrawCachingFigure(line, interruption)) return *drawn;
+  if (const PhotonFigure photons; line.figure == photons.name) return DrawPhotonMap(photons, line, interruption);
   const ConvergenceFigure convergence;
   if (line.figure == convergence.name) {
     CommandLine bench = line;

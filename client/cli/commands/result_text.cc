@@ -57,12 +57,17 @@ std::optional<double> LargestRelativeError(const v1::ProbeResult& probe,
   return largest;
 }
 
+std::string BiasText(const v1::ProbeResult& probe) {
+  const auto bias = LargestRelativeError(probe, probe.estimated_bias());
+  return bias ? ", estimated bias " + FormatPercent(*bias) : "";
+}
+
 std::string ErrorText(const v1::RenderResult& result, const v1::ProbeResult& probe) {
   const int unknown = static_cast<int>(probe.count()) - KnownPoints(probe);
   if (unknown > 0)
     return "no samples at " + std::to_string(unknown) + " of " + std::to_string(probe.count()) + " points";
   if (const auto error = LargestRelativeError(probe, probe.standard_error()))
-    return "largest relative standard error " + FormatPercent(*error);
+    return "largest relative standard error " + FormatPercent(*error) + BiasText(probe);
   if (const auto error = LargestRelativeError(probe, probe.estimated_error()))
     return "largest estimated relative error " + FormatPercent(*error);
   if (result.statistics().has_error_bound())
@@ -97,6 +102,7 @@ std::string ResultText(const v1::RenderResult& result) {
   std::string text = FormatTable(rows);
   text += EndText(result.end_reason()) + " in " + FormatSeconds(statistics.wall_seconds());
   if (statistics.has_cpu_seconds()) text += " (" + FormatSeconds(statistics.cpu_seconds()) + " of processor time)";
+  if (statistics.photons() > 0) text += ", " + FormatCount(statistics.photons()) + " photons";
   if (statistics.has_records()) text += ", " + FormatCount(statistics.records()) + " records";
   if (statistics.has_reused_records()) text += " (" + FormatCount(statistics.reused_records()) + " reused)";
   if (statistics.rays() > 0) text += ", " + FormatCount(statistics.rays()) + " rays";

@@ -39,7 +39,8 @@ Values Get(const v1::ProbeResult& probe, const std::string& quantity) {
   return {&probe.irradiance(), &probe.standard_error()};
 }
 
-// One side's stated error of a value: a standard error if the probe is estimated, else a bound.
+// One side's stated error of a value: a standard error if the probe is estimated, else a bound; or the bias that it
+// expects beside the first.
 struct Stated {
   double deviation = 0;
   double bound = 0;
@@ -48,7 +49,10 @@ struct Stated {
 Stated ErrorOf(const v1::RenderResult& result, const v1::ProbeResult& probe, const Values& values, int i,
                bool irradiance) {
   const bool estimated = !probe.standard_error().empty();
-  if (estimated) return {values.error->empty() ? 0 : (*values.error)[i], 0};
+  if (estimated) {
+    const double bias = irradiance && !probe.estimated_bias().empty() ? probe.estimated_bias(i) : 0;
+    return {values.error->empty() ? 0 : (*values.error)[i], bias};
+  }
   if (irradiance && !probe.irradiance_error().empty()) return {0, probe.irradiance_error(i)};
   if (irradiance && !probe.estimated_error().empty()) return {0, probe.estimated_error(i)};
   if (irradiance) return {0, result.statistics().error_bound()};
@@ -103,8 +107,10 @@ class QuantityComparer {
       }
       if (deviation > rounding) {
         ++estimated;
-        sum_z += difference / deviation;
-        sum_z2 += difference * difference / (deviation * deviation);
+        // Beyond what is stated of bias and bounds.
+        const double beyond = std::max(std::abs(difference) - ea.bound - eb.bound, 0.0);
+        sum_z += std::copysign(beyond, difference) / deviation;
+        sum_z2 += beyond * beyond / (deviation * deviation);
       }
       const double allowed = tolerance ? *tolerance * std::max(std::abs(y), kDark * mean_size)
                                        : point_limit * deviation + ea.bound + eb.bound + rounding;

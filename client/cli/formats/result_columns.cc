@@ -17,6 +17,7 @@ const std::vector<ResultColumn>& AllResultColumns() {
       {"standardError", [](const Probe& p) -> const DoubleArray& { return p.standard_error(); }, 0, 0},
       {"irradianceError", [](const Probe& p) -> const DoubleArray& { return p.irradiance_error(); }, 0, 0},
       {"estimatedError", [](const Probe& p) -> const DoubleArray& { return p.estimated_error(); }, 0, 0},
+      {"estimatedBias", [](const Probe& p) -> const DoubleArray& { return p.estimated_bias(); }, 0, 0},
       {"gradient", [](const Probe& p) -> const DoubleArray& { return p.gradient(); }, 0, 0},
       {"gradientError", [](const Probe& p) -> const DoubleArray& { return p.gradient_error(); }, 0, 0},
       {"hessian", [](const Probe& p) -> const DoubleArray& { return p.hessian(); }, 0, 0},

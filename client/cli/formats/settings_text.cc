@@ -23,6 +23,11 @@ std::string SettingsText(const v1::Settings& settings) {
   if (settings.has_extrapolation()) add("extrapolation", std::to_string(settings.extrapolation()));
   if (settings.has_tolerance()) add("tolerance", FormatExactly(settings.tolerance()));
   if (settings.has_max_records()) add("max-records", std::to_string(settings.max_records()));
+  if (settings.has_photons()) add("photons", std::to_string(settings.photons()));
+  if (settings.has_final_gather()) add("final-gather", settings.final_gather() ? "true" : "false");
+  if (settings.has_bandwidth()) add("bandwidth", FormatExactly(settings.bandwidth()));
+  if (settings.has_neighbours()) add("neighbours", std::to_string(settings.neighbours()));
+  if (settings.kernel() != 0) add("kernel", OptionName(settings.kernel()));
   if (settings.has_target_error()) add("target-error", FormatExactly(settings.target_error()));
   if (settings.has_time_limit()) add("time-limit", FormatExactly(settings.time_limit()));
   if (settings.has_threads()) add("threads", std::to_string(settings.threads()));

@@ -89,6 +89,18 @@ void AddCachingExtras(CLI::App& app, SettingsOptions& settings) {
                "place records for two thirds of the tolerance, use them up to all of it");
 }
 
+void AddPhotons(CLI::App& app, SettingsOptions& settings) {
+  app.add_option("--photons", settings.photons, "of photon-mapping, in all (default 65536)")->type_name("N");
+  app.add_option("--final-gather", settings.final_gather,
+                 "true: rays look photons up; false: their density at the points (default: true if something reflects)")
+      ->type_name("BOOL");
+  app.add_option("--bandwidth", settings.bandwidth, "half the kernel's width, in m (default: narrows with photons)")
+      ->type_name("H");
+  app.add_option("--neighbours", settings.neighbours, "in place of a bandwidth: up to this nearest photon")
+      ->type_name("K");
+  app.add_option("--kernel", settings.kernel, "box, triangle, epanechnikov or biweight")->type_name("NAME");
+}
+
 void AddThreadsAndSkips(CLI::App& app, SettingsOptions& settings) {
   app.add_option("--threads", settings.threads, "at most so many (default: all the server's)")->type_name("N");
   app.add_option("--no-skip", settings.no_skip, "do work that could be left out, see explain; may be repeated")
@@ -99,10 +111,11 @@ void AddThreadsAndSkips(CLI::App& app, SettingsOptions& settings) {
 void AddSettings(CLI::App& app, Raw& raw) {
   SettingsOptions& settings = raw.settings;
   app.add_option("--method", settings.method,
-                 "exact (direct light), path-tracing, ray-tracing, reference or irradiance-caching")
+                 "exact (direct light), path-tracing, ray-tracing, reference, irradiance-caching or photon-mapping")
       ->type_name("NAME");
-  app.add_option("--samples", settings.samples,
-                 "paths a point (default 1024), first rays a point of ray-tracing (256) or a record (1024)")
+  app.add_option(
+         "--samples", settings.samples,
+         "paths a point (default 1024), first rays a point of ray-tracing or photon-mapping (256) or a record (1024)")
       ->type_name("N");
   AddBounces(app, settings);
   app.add_option("--seed", settings.seed, "another seed, an independent result (default 0)")->type_name("N");
@@ -110,6 +123,7 @@ void AddSettings(CLI::App& app, Raw& raw) {
   AddFormulation(app, settings);
   AddCaching(app, settings);
   AddCachingExtras(app, settings);
+  AddPhotons(app, settings);
   app.add_option("--target-error", settings.target_error, "stop at this relative standard error, in (0, 1]")
       ->type_name("E");
   app.add_option("--time-limit", settings.time_limit, "stop after so many seconds")->type_name("S");
@@ -207,6 +221,7 @@ void AddFigure(CLI::App& app, Raw& raw) {
       AddCommand(app, "figure", "repeat an experiment of the papers: key numbers, CSV, plot", kFigureHelp);
   figure.add_option("NAME", raw.line.figure, "one of those below")->required();
   figure.add_option("--samples", raw.settings.samples, "first rays a point (default 256)")->type_name("N");
+  figure.add_option("--photons", raw.settings.photons, "of photon-map (default 100)")->type_name("N");
   figure.add_option("--seed", raw.settings.seed, "another seed (default 0)")->type_name("N");
   AddOutputs(figure, raw);
   AddJson(figure, raw, "the figure's data");

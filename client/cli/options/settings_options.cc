@@ -49,6 +49,14 @@ absl::Status SetNumber(const std::string& option, const Text& text, double high,
   return absl::OkStatus();
 }
 
+absl::Status SetSwitch(const std::string& option, const Text& text, v1::Settings& settings,
+                       void (v1::Settings::*set)(bool)) {
+  if (!text) return absl::OkStatus();
+  if (*text != "true" && *text != "false") return Refuse(option, *text, "true or false");
+  (settings.*set)(*text == "true");
+  return absl::OkStatus();
+}
+
 template <class Enum>
 absl::Status SetChoice(const std::string& option, const Text& text, v1::Settings& settings,
                        void (v1::Settings::*set)(Enum)) {
@@ -104,6 +112,11 @@ absl::StatusOr<v1::Settings> ParseSettings(const SettingsOptions& options) {
       SetCount("--extrapolation", options.extrapolation, 0, settings, &Settings::set_extrapolation),
       SetNumber("--tolerance", options.tolerance, 1, settings, &Settings::set_tolerance),
       SetCount("--max-records", options.max_records, 1, settings, &Settings::set_max_records),
+      SetCount("--photons", options.photons, 1, settings, &Settings::set_photons),
+      SetSwitch("--final-gather", options.final_gather, settings, &Settings::set_final_gather),
+      SetNumber("--bandwidth", options.bandwidth, kAny, settings, &Settings::set_bandwidth),
+      SetCount("--neighbours", options.neighbours, 2, settings, &Settings::set_neighbours),
+      SetChoice("--kernel", options.kernel, settings, &Settings::set_kernel),
       SetNumber("--target-error", options.target_error, 1, settings, &Settings::set_target_error),
       SetNumber("--time-limit", options.time_limit, kAny, settings, &Settings::set_time_limit),
       SetCount("--threads", options.threads, 1, settings, &Settings::set_threads)};

@@ -16,7 +16,8 @@ namespace flatlight {
 // As written on the command line.
 struct SettingsOptions {
   std::optional<std::string> method, samples, max_bounces, seed, derivatives, formulation, target_error, time_limit,
-      threads, error_control, gather, extrapolation, tolerance, max_records;
+      threads, error_control, gather, extrapolation, tolerance, max_records, photons, final_gather, bandwidth,
+      neighbours, kernel;
   bool neighbour_clamping = false, overture = false;
   std::vector<std::string> no_skip;
 };

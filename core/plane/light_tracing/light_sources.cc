@@ -75,6 +75,7 @@ EmittedRay LightSources::Emit(double u, double v) const {
     ray.direction = CosineDirection(curve->side == Side::kFront ? frame.normal : -frame.normal, v);
   } else if (const auto* const* point = std::get_if<const PointLight*>(&source->kind)) {
     const PointLight& light = **point;
+    ray.has_surface = false;
     ray.from.position = light.position;
     if (light.cone_angle >= std::numbers::pi) {
       ray.direction = Turned({1, 0}, kFullTurn * v);
@@ -84,6 +85,7 @@ EmittedRay LightSources::Emit(double u, double v) const {
       ray.flux = light.Share(ray.direction) * (2 * light.edge_angle / (light.cone_angle + light.edge_angle)) * ray.flux;
     }
   } else if (const auto* const* directional = std::get_if<const DirectionalLight*>(&source->kind)) {
+    ray.has_surface = false;
     ray.direction = (*directional)->direction;
     ray.from.position = center_ + radius_ * ((2 * place - 1) * Left(ray.direction) - 2 * ray.direction);
   } else {

@@ -15,8 +15,9 @@ namespace flatlight {
 // Light that leaves a source.
 struct EmittedRay {
   SurfacePoint from;
-  Vector2 direction;  // Unit.
-  Spectrum flux;      // Over the density: its mean over all rays is the flux of all sources. Normalised.
+  Vector2 direction;        // Unit.
+  Spectrum flux;            // Over the density: its mean over all rays is the flux of all sources. Normalised.
+  bool has_surface = true;  // False for lights that no ray meets.
 };
 
 // All that shines in a scene, chosen by flux: sides of curves, lights, and the sky, whose light comes from a circle

@@ -22,23 +22,12 @@ LightTracer::LightTracer(std::shared_ptr<const RayCaster> caster, const Box& see
 }
 
 double LightTracer::AddPath(const SampleStream& stream, std::uint32_t index, std::span<FluenceImage> images) const {
-  const SamplePair start = stream.Pair(index, 0);
-  const EmittedRay emitted = sources_.Emit(start.u, start.v);
-  SurfacePoint at = emitted.from;
-  Vector2 direction = emitted.direction;
-  Spectrum flux = emitted.flux;
-  double rays = 0;
-  for (std::uint32_t depth = 0; !flux.IsBlack(); ++depth) {
-    const std::optional<Hit> hit = caster_->ClosestHit(at, direction);
-    ++rays;
+  return Follow(stream, index, [&](const LightStep& step) {
     // From a light far away the way to the images may be long.
-    const Point2 end = hit ? hit->position : at.position + (far_ + Length(at.position - Point2{})) * direction;
-    for (FluenceImage& image : images) image.AddLine(at.position, end, flux);
-    if (!hit || depth == most_bounces_) break;
-    if (!Scatter(*hit, stream, index, depth, direction, flux)) break;
-    at = {hit->position, hit->element};
-  }
-  return rays;
+    const Point2 end = step.hit ? step.hit->position
+                                : step.from.position + (far_ + Length(step.from.position - Point2{})) * step.direction;
+    for (FluenceImage& image : images) image.AddLine(step.from.position, end, step.flux);
+  });
 }
 
 bool LightTracer::Scatter(const Hit& hit, const SampleStream& stream, std::uint32_t index, std::uint32_t depth,

@@ -17,6 +17,16 @@
 
 namespace flatlight {
 
+// A straight stretch of a path of light.
+struct LightStep {
+  const EmittedRay& emitted;  // Of the path.
+  const SurfacePoint& from;
+  Vector2 direction;
+  const std::optional<Hit>& hit;  // Absent: it goes on for ever.
+  const Spectrum& flux;           // Its mean over all paths is the flux of all sources. Normalised.
+  std::uint32_t depth;            // Reflections and refractions before.
+};
+
 // Light followed from its sources: every way of a path through an image is light in it. Unbiased, caustics included,
 // for a pixel is met by light as it is: nothing is asked from the other side. Paths go on with the chance with which
 // light is reflected, so that all that are left carry alike much.
@@ -30,6 +40,27 @@ class LightTracer {
   // Adds path `index` of a stream to all images; its mean is the fluence of the scene. Requires a source. Returns the
   // rays cast.
   double AddPath(const SampleStream& stream, std::uint32_t index, std::span<FluenceImage> images) const;
+
+  // Calls visit(LightStep) for all that path `index` of a stream goes through. Requires a source. Returns the rays
+  // cast.
+  template <typename Visit>
+  double Follow(const SampleStream& stream, std::uint32_t index, Visit visit) const {
+    const SamplePair start = stream.Pair(index, 0);
+    const EmittedRay emitted = sources_.Emit(start.u, start.v);
+    SurfacePoint at = emitted.from;
+    Vector2 direction = emitted.direction;
+    Spectrum flux = emitted.flux;
+    double rays = 0;
+    for (std::uint32_t depth = 0; !flux.IsBlack(); ++depth) {
+      const std::optional<Hit> hit = caster_->ClosestHit(at, direction);
+      ++rays;
+      visit(LightStep{emitted, at, direction, hit, flux, depth});
+      if (!hit || depth == most_bounces_) break;
+      if (!Scatter(*hit, stream, index, depth, direction, flux)) break;
+      at = {hit->position, hit->element};
+    }
+    return rays;
+  }
 
  private:
   // Changes a path's flux and direction where it meets a curve. False if it ends there.

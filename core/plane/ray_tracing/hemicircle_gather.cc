@@ -33,7 +33,7 @@ void Cast(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std
     ray.to = hit->distance * direction;
     ray.normal = Dot(hit->normal, direction) < 0 ? hit->normal : -hit->normal;
   } else {
-    ray.radiance = tree.caster().scene().environment();
+    ray.radiance = tree.Sky();
   }
 }
 

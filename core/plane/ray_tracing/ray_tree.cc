@@ -29,15 +29,24 @@ RayTree::RayTree(std::shared_ptr<const RayCaster> caster, const RayTreeOptions& 
       end_black_paths_(options.end_black_paths),
       most_bounces_(options.max_bounces.value_or(std::numeric_limits<std::uint32_t>::max())),
       lights_(*caster_),
-      chains_(*caster_, {.most_links = most_bounces_}) {
+      chains_(std::make_shared<const ChainLights>(*caster_, ChainOptions{.most_links = most_bounces_})) {
+  auto surfaces = std::make_shared<std::vector<Surface>>();
   for (const Curve& curve : scene_.curves()) {
     Surface surface{curve.reflectance, curve.EmittedRadiance(Side::kFront), curve.EmittedRadiance(Side::kBack), {}, {}};
     if (!std::holds_alternative<Lambertian>(curve.material)) {
       surface.front.emplace(curve.material, Side::kFront);
       surface.back.emplace(curve.material, Side::kBack);
     }
-    surfaces_.push_back(surface);
+    surfaces->push_back(surface);
   }
+  surfaces_ = std::move(surfaces);
+}
+
+RayTree RayTree::EndedBy(const KnownIrradiance& known, Emission emission) const {
+  RayTree ended = *this;
+  ended.known_ = &known;
+  ended.emission_ = emission;
+  return ended;
 }
 
 std::uint32_t RayTree::Branches(std::uint32_t rays) {
@@ -52,11 +61,17 @@ Spectrum RayTree::Radiance(const Hit& hit, Vector2 direction, std::uint32_t rays
 Spectrum RayTree::Arriving(const Hit& hit, Vector2 direction, std::uint32_t depth, std::uint32_t branches, int lossless,
                            std::uint64_t key, const Growth& growth) const {
   const Element& element = scene_.element(hit.element);
-  const Surface& surface = surfaces_[static_cast<std::size_t>(element.curve)];
+  const Surface& surface = (*surfaces_)[static_cast<std::size_t>(element.curve)];
   const bool front = Dot(hit.normal, direction) < 0;
-  const Spectrum& emitted = front ? surface.front_radiance : surface.back_radiance;
+  Spectrum emitted;
+  if (emission_ == Emission::kSeen) emitted = front ? surface.front_radiance : surface.back_radiance;
   if (depth == most_bounces_ || growth.cancellation.cancelled()) return emitted;
   if (end_black_paths_ && surface.reflectance.IsBlack()) return emitted;
+  if (known_ != nullptr && !surface.front) {
+    const Spectrum irradiance =
+        known_->At({hit.position, hit.element}, front ? Side::kFront : Side::kBack, most_bounces_ - depth - 1);
+    return emitted + 0.5 * surface.reflectance * irradiance;
+  }
   Vertex vertex;
   vertex.at = {hit.position, hit.element};
   vertex.normal = front ? hit.normal : -hit.normal;
@@ -72,7 +87,7 @@ Spectrum RayTree::Leaving(const Vertex& vertex, double sine, double cosine, std:
   const Vector2 direction = vertex.Direction(sine, cosine);
   ++growth.cast;
   const std::optional<Hit> hit = caster_->ClosestHit(vertex.at, direction);
-  return hit ? Arriving(*hit, direction, depth + 1, branches, lossless, key, growth) : scene_.environment();
+  return hit ? Arriving(*hit, direction, depth + 1, branches, lossless, key, growth) : Sky();
 }
 
 template <typename Visit>
@@ -80,11 +95,11 @@ void RayTree::VisitLights(const Vertex& vertex, std::uint32_t depth, std::uint64
                           Visit visit) const {
   lights_.VisitUnblocked(vertex, Number(key, kLights), growth.cast, visit);
   const std::uint32_t most_links = most_bounces_ - depth - 1;
-  if (chains_.empty() || most_links == 0) return;
+  if (chains_->empty() || most_links == 0) return;
   std::vector<ChainedLight> chained;
-  chains_.Find(ChainEffort::kCoarse, vertex.at, vertex.normal, most_links, growth.cast, chained);
-  chains_.FindByChance(ChainEffort::kCoarse, vertex.at, vertex.normal, most_links, Number(key, kChains), growth.cast,
-                       chained);
+  chains_->Find(ChainEffort::kCoarse, vertex.at, vertex.normal, most_links, growth.cast, chained);
+  chains_->FindByChance(ChainEffort::kCoarse, vertex.at, vertex.normal, most_links, Number(key, kChains), growth.cast,
+                        chained);
   for (const ChainedLight& way : chained) visit(way.light);
 }
 
@@ -111,7 +126,7 @@ Spectrum RayTree::Diffuse(const Vertex& vertex, const Spectrum& reflectance, std
 Spectrum RayTree::Scattered(const Vertex& vertex, const Scattering& scattering, LocalDirection out, std::uint32_t depth,
                             std::uint32_t branches, int lossless, std::uint64_t key, const Growth& growth) const {
   Spectrum light;
-  if (!scattering.specular()) {
+  if (!scattering.specular() && emission_ == Emission::kSeen) {
     VisitLights(vertex, depth, key, growth, [&](const IncidentLight& incident) {
       const LocalDirection in{Dot(vertex.Tangent(), incident.direction), incident.cosine};
       light = light + incident.cosine * (scattering.Value(out, in) * incident.irradiance);

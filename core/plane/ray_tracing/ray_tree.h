@@ -22,12 +22,27 @@ struct RayTreeOptions {
   bool end_black_paths = false;              // Changes no result: nothing goes on from a black curve.
 };
 
+// Irradiance of Lambertian curves that some method has found before, so that trees of rays can end there.
+class KnownIrradiance {
+ public:
+  virtual ~KnownIrradiance() = default;
+  // On one side of an element; of light that was reflected and refracted at most `bounces` times. Normalised. Safe to
+  // call from several threads.
+  virtual Spectrum At(const SurfacePoint& on_element, Side side, std::uint32_t bounces) const = 0;
+};
+
+enum class Emission : std::uint8_t { kSeen, kLeftOut };
+
 // Radiance by branching Monte Carlo (Jarosz et al. 2012): where a ray arrives on a curve, several go on, stratified
 // over the hemicircle, each of them in turn with fewer; single ones play roulette. Emitters are found by the rays that
 // meet them. All that is random is a pure function of a key.
 class RayTree {
  public:
   RayTree(std::shared_ptr<const RayCaster> caster, const RayTreeOptions& options);
+
+  // The same, but of each tree what grows from Lambertian curves is `known`, which must outlive it: rays go on from the
+  // others alone. With emission left out it tells what `known`, which may then be a difference, makes of its own.
+  RayTree EndedBy(const KnownIrradiance& known, Emission emission = Emission::kSeen) const;
 
   // Rays that leave a place to which one of `rays` came: their square root, so that the noise of what a ray brings is
   // of the order of what its neighbours leave out. At least 1.
@@ -38,9 +53,13 @@ class RayTree {
   Spectrum Radiance(const Hit& hit, Vector2 direction, std::uint32_t rays, std::uint64_t key,
                     const Cancellation& cancellation, double& cast) const;
 
+  Emission emission() const { return emission_; }
+  // What comes along rays that meet nothing.
+  Spectrum Sky() const { return emission_ == Emission::kSeen ? scene_.environment() : Spectrum{}; }
+
   const RayCaster& caster() const { return *caster_; }
   // Of lights without a surface, over mirrors and glass.
-  const ChainLights& chains() const { return chains_; }
+  const ChainLights& chains() const { return *chains_; }
   std::uint32_t most_bounces() const { return most_bounces_; }
 
  private:
@@ -74,8 +93,10 @@ class RayTree {
   bool end_black_paths_;
   std::uint32_t most_bounces_;
   LightSampler lights_;
-  ChainLights chains_;
-  std::vector<Surface> surfaces_;  // By curve.
+  std::shared_ptr<const ChainLights> chains_;
+  std::shared_ptr<const std::vector<Surface>> surfaces_;  // By curve.
+  const KnownIrradiance* known_ = nullptr;
+  Emission emission_ = Emission::kSeen;
 };
 
 }  // namespace flatlight

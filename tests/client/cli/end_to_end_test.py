@@ -141,7 +141,7 @@ class EndToEnd(PictureReader, CliCase):
         self.assertIn("%", rows["arc-length", "gradient"])
         with open(self.path("f.svg")) as file:
             self.assertIn("arc-length", file.read())
-        self.assertIn("there are derivatives, derivatives-occluded, convergence",
+        self.assertIn("there are derivatives, derivatives-occluded, photon-map, convergence",
                       self.run_cli("figure", "nothing", status=2).stderr)
 
     def test_standard_output_is_for_machines(self):

@@ -89,7 +89,7 @@ TEST(ResultConvertTest, WhatTheFieldLacksIsAbsent) {
 
 TEST(ResultConvertTest, EveryArrayReachesItsOwnField) {
   Field field;
-  field.probes.push_back({{1}, {2}, {3}, {4}, {5}, {6}, {9}, {10}, {7}, {8}, {11}});
+  field.probes.push_back({{1}, {2}, {3}, {4}, {5}, {6}, {9}, {10}, {7}, {8}, {11}, {12}});
   v1::ProbeResult out;
   FillProbeValues(field, 1, 0, 0, 1, out);
   EXPECT_THAT(out.irradiance(), ElementsAre(1));
@@ -103,6 +103,7 @@ TEST(ResultConvertTest, EveryArrayReachesItsOwnField) {
   EXPECT_THAT(out.rotation_gradient(), ElementsAre(9));
   EXPECT_THAT(out.rotation_gradient_error(), ElementsAre(10));
   EXPECT_THAT(out.estimated_error(), ElementsAre(11));
+  EXPECT_THAT(out.estimated_bias(), ElementsAre(12));
 }
 
 TEST(ResultConvertTest, AResultHasAllProbes) {

@@ -23,10 +23,11 @@ v1::ProbeResult FullProbe(v1::ProbeResult::Quantity quantity) {
   probe.set_quantity(quantity);
   probe.set_count(2);
   probe.set_channels(3);
-  for (auto* values : {probe.mutable_irradiance(), probe.mutable_standard_error(), probe.mutable_gradient(),
-                       probe.mutable_gradient_error(), probe.mutable_hessian(), probe.mutable_hessian_error(),
-                       probe.mutable_irradiance_error(), probe.mutable_rotation_gradient(),
-                       probe.mutable_rotation_gradient_error(), probe.mutable_estimated_error()}) {
+  for (auto* values :
+       {probe.mutable_irradiance(), probe.mutable_standard_error(), probe.mutable_gradient(),
+        probe.mutable_gradient_error(), probe.mutable_hessian(), probe.mutable_hessian_error(),
+        probe.mutable_irradiance_error(), probe.mutable_rotation_gradient(), probe.mutable_rotation_gradient_error(),
+        probe.mutable_estimated_error(), probe.mutable_estimated_bias()}) {
     Add(*values, 6);
   }
   Add(*probe.mutable_samples(), 2);
@@ -90,6 +91,7 @@ TEST(ResultReadTest, WhatIsReadBackIsWrittenTheSame) {
   }
   for (const auto side : {v1::CacheRecord::FRONT, v1::CacheRecord::BACK}) *result.add_records() = FullRecord(side);
   result.mutable_statistics()->set_rays(123);
+  result.mutable_statistics()->set_photons(100);
   result.mutable_statistics()->set_error_bound(1e-9);
   result.mutable_statistics()->set_records(2);
   result.mutable_statistics()->set_reused_records(1);

@@ -34,6 +34,11 @@ v1::Settings EverySetting() {
   proto.set_max_records(12);
   proto.set_neighbour_clamping(true);
   proto.set_overture(false);
+  proto.set_photons(13);
+  proto.set_final_gather(false);
+  proto.set_bandwidth(0.25);
+  proto.set_neighbours(14);
+  proto.set_kernel(v1::Settings::BIWEIGHT);
   proto.add_no_skip("colour");
   proto.add_no_skip("visibility");
   return proto;
@@ -59,6 +64,11 @@ TEST(SettingsConvertTest, EverySettingComesBack) {
   EXPECT_EQ(settings.max_records, 12U);
   EXPECT_EQ(settings.neighbour_clamping, true);
   EXPECT_EQ(settings.overture, false);
+  EXPECT_EQ(settings.photons, 13U);
+  EXPECT_EQ(settings.final_gather, false);
+  EXPECT_EQ(settings.bandwidth, 0.25);
+  EXPECT_EQ(settings.neighbours, 14U);
+  EXPECT_EQ(settings.kernel, Kernel::kBiweight);
   EXPECT_THAT(settings.no_skip, ElementsAre("colour", "visibility"));
   EXPECT_TRUE(MessageDifferencer::Equals(SettingsToProto(settings), EverySetting()));
 }
@@ -78,12 +88,14 @@ TEST(SettingsConvertTest, WhatIsAbsentStaysAbsent) {
   EXPECT_FALSE(settings.method || settings.samples || settings.max_bounces || settings.seed || settings.derivatives ||
                settings.target_error || settings.time_limit || settings.threads || settings.error_control ||
                settings.gather || settings.extrapolation || settings.tolerance || settings.max_records);
+  EXPECT_FALSE(settings.photons || settings.final_gather || settings.bandwidth || settings.neighbours ||
+               settings.kernel);
   EXPECT_TRUE(MessageDifferencer::Equals(SettingsToProto(settings), v1::Settings()));
 }
 
 TEST(SettingsConvertTest, EveryMethodAndEveryOrderOfDerivativesComesBack) {
   for (const auto method : {v1::Settings::EXACT, v1::Settings::PATH_TRACING, v1::Settings::RAY_TRACING,
-                            v1::Settings::REFERENCE, v1::Settings::IRRADIANCE_CACHING}) {
+                            v1::Settings::REFERENCE, v1::Settings::IRRADIANCE_CACHING, v1::Settings::PHOTON_MAPPING}) {
     for (const auto derivatives : {v1::Settings::NONE, v1::Settings::GRADIENT, v1::Settings::HESSIAN}) {
       v1::Settings proto;
       proto.set_method(method);

@@ -58,7 +58,7 @@ inline std::uint64_t HashOf(const Field& field) {
     for (const std::vector<double>* values :
          {&probe.irradiance, &probe.standard_error, &probe.gradient, &probe.hessian, &probe.gradient_error,
           &probe.hessian_error, &probe.samples, &probe.irradiance_error, &probe.rotation_gradient,
-          &probe.rotation_gradient_error, &probe.estimated_error}) {
+          &probe.rotation_gradient_error, &probe.estimated_error, &probe.estimated_bias}) {
       for (const double value : *values) {
         std::uint64_t bits;
         std::memcpy(&bits, &value, sizeof(bits));

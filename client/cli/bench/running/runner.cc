@@ -45,6 +45,12 @@ struct Ladder {
   bool AtTop() const { return top == points.size(); }
 };
 
+// In proportion to the rays that look them up, as the method's defaults are.
+std::uint32_t PhotonsFor(std::uint32_t samples) {
+  constexpr std::uint32_t kPhotonsPerSample = 256;
+  return std::min(samples, std::numeric_limits<std::uint32_t>::max() / kPhotonsPerSample) * kPhotonsPerSample;
+}
+
 class Runner {
  public:
   Runner(Connection& connection, const BenchOptions& options, std::uint32_t base_seed, const BenchRow& context,
@@ -188,6 +194,7 @@ class Runner {
   v1::Settings SettingsOf(const Ladder& ladder, const BenchPoint& point, std::uint32_t seed) const {
     v1::Settings settings = ladder.method->settings;
     if (point.budget) settings.set_samples(*point.budget);
+    if (point.budget && ladder.method->takes_photons) settings.set_photons(PhotonsFor(*point.budget));
     if (ladder.method->takes_seed) settings.set_seed(seed);
     return settings;
   }

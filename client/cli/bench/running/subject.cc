@@ -180,9 +180,11 @@ class Preparation {
     v1::Settings settings = plan->settings();
     method.takes_samples = settings.has_samples();
     method.takes_seed = settings.has_seed();
+    method.takes_photons = method.takes_samples && settings.has_photons();
     method.threads = settings.threads();
     settings.clear_method();
     settings.clear_samples();
+    if (method.takes_photons) settings.clear_photons();
     settings.clear_seed();
     settings.clear_threads();
     method.text = SettingsText(settings);

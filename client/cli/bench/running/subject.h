@@ -23,6 +23,7 @@ struct BenchMethod {
   std::uint32_t threads = 0;
   bool takes_samples = false;
   bool takes_seed = false;
+  bool takes_photons = false;  // As many as go with the samples.
 };
 
 struct Subject {

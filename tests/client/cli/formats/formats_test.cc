@@ -146,8 +146,8 @@ TEST(EnumNames, ComeFromTheApi) {
   EXPECT_EQ(OptionValue(type, "exact"), v1::Settings::EXACT);
   EXPECT_EQ(OptionValue(type, "EXACT"), std::nullopt);
   EXPECT_EQ(OptionValue(type, "method-unspecified"), std::nullopt);
-  EXPECT_THAT(OptionNames(type),
-              ::testing::ElementsAre("exact", "path-tracing", "ray-tracing", "reference", "irradiance-caching"));
+  EXPECT_THAT(OptionNames(type), ::testing::ElementsAre("exact", "path-tracing", "ray-tracing", "reference",
+                                                        "irradiance-caching", "photon-mapping"));
 }
 
 }  // namespace

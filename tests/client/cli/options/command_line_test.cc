@@ -125,6 +125,14 @@ TEST(CommandLine, AllOfRender) {
   EXPECT_TRUE(caching.has_extrapolation());
   EXPECT_EQ(caching.tolerance(), 0.5);
   EXPECT_EQ(caching.max_records(), 3u);
+  const v1::Settings photons = Parse({"render", "a", "--photons", "100", "--final-gather", "false", "--bandwidth",
+                                      "0.5", "--neighbours", "9", "--kernel", "triangle"})
+                                   ->settings;
+  EXPECT_EQ(photons.photons(), 100u);
+  EXPECT_TRUE(photons.has_final_gather() && !photons.final_gather());
+  EXPECT_EQ(photons.bandwidth(), 0.5);
+  EXPECT_EQ(photons.neighbours(), 9u);
+  EXPECT_EQ(photons.kernel(), v1::Settings::TRIANGLE);
   EXPECT_EQ(settings.target_error(), 0.01);
   EXPECT_EQ(settings.time_limit(), 1000);
   EXPECT_EQ(settings.threads(), 2U);
@@ -179,15 +187,20 @@ TEST(CommandLine, MistakesAreNamed) {
   EXPECT_THAT(ErrorOf({"bogus", "x"}), HasSubstr("'bogus' is not a command"));
   EXPECT_THAT(ErrorOf({"render"}), HasSubstr("SCENE is required; see flatlight render --help"));
   EXPECT_THAT(ErrorOf({"render", "a", "b"}), HasSubstr("b"));
-  EXPECT_THAT(ErrorOf({"render", "a", "--photons", "3"}), HasSubstr("--photons"));
+  EXPECT_THAT(ErrorOf({"render", "a", "--foo", "3"}), HasSubstr("--foo"));
   EXPECT_THAT(ErrorOf({"compare", "a"}), HasSubstr("RESULTS"));
   EXPECT_THAT(ErrorOf({"jobs", "--server", ""}), HasSubstr("--server"));
   EXPECT_EQ(ErrorOf({"compare", "a", "b", "--tolerance", "-1"}), "--tolerance: '-1'; must be a number from 0");
   EXPECT_EQ(ErrorOf({"render", "a", "--method", "magic"}),
-            "--method: 'magic'; must be one of exact, path-tracing, ray-tracing, reference, irradiance-caching");
+            "--method: 'magic'; must be one of exact, path-tracing, ray-tracing, reference, irradiance-caching, "
+            "photon-mapping");
   EXPECT_EQ(ErrorOf({"render", "a", "--samples", "0", "--threads", "x"}),
             "--samples: '0'; must be a whole number from 1 to 4294967295\n"
             "--threads: 'x'; must be a whole number from 1 to 4294967295");
+  EXPECT_EQ(ErrorOf({"render", "a", "--photons", "0", "--final-gather", "perhaps", "--neighbours", "1"}),
+            "--photons: '0'; must be a whole number from 1 to 4294967295\n"
+            "--final-gather: 'perhaps'; must be true or false\n"
+            "--neighbours: '1'; must be a whole number from 2 to 4294967295");
   EXPECT_EQ(ErrorOf({"render", "a", "--target-error", "1.5"}),
             "--target-error: '1.5'; must be a number above 0, at most 1");
   for (const char* bad : {"", "nan", "inf", "-1", "0", "1x", "1e999"})
