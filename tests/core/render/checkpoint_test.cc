@@ -2,6 +2,7 @@
 // Renderings that are broken off, written down and taken up again, on other threads: they end with the same bits.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <limits>
 #include <memory>
@@ -24,12 +25,13 @@ constexpr std::size_t kAnyLength = std::numeric_limits<std::size_t>::max();
 class TickingClock final : public Clock {
  public:
   explicit TickingClock(Duration tick = std::chrono::microseconds(10)) : tick_(tick) {}
-  Time Now() const override { return now_ += tick_; }
-  Time now_without_tick() const { return now_; }
+  // All threads of a slice look at it.
+  Time Now() const override { return Time(Duration((ticks_ += 1) * tick_)); }
+  Time now_without_tick() const { return Time(Duration(ticks_ * tick_)); }
 
  private:
   Duration tick_;
-  mutable Time now_;
+  mutable std::atomic<Duration::rep> ticks_ = 0;
 };
 
 struct Case {
