@@ -27,7 +27,7 @@ class TickingClock final : public Clock {
   explicit TickingClock(Duration tick = std::chrono::microseconds(10)) : tick_(tick) {}
   // All threads of a slice look at it.
   Time Now() const override { return Time(Duration((ticks_ += 1) * tick_)); }
-  Time now_without_tick() const { return Time(Duration(ticks_ * tick_)); }
+  Time now_without_tick() const { return Time(Duration(ticks_.load() * tick_)); }
 
  private:
   Duration tick_;
