@@ -30,6 +30,19 @@ ElementFrame FrameAt(const Element& element, double fraction) {
   return frame;
 }
 
+double FractionAt(const Element& element, Point2 on_element) {
+  double fraction;
+  if (element.kind == Element::Kind::kSegment) {
+    const Vector2 along = element.b - element.a;
+    fraction = Dot(on_element - element.a, along) / LengthSquared(along);
+  } else {
+    const Vector2 radial = element.radial_a + (on_element - element.a) / element.radius;
+    fraction = AngleOf(Dot(element.radial_a, radial), std::abs(Cross(element.radial_a, radial))) /
+               std::abs(element.sweep_angle);
+  }
+  return std::clamp(fraction, 0.0, 1.0);
+}
+
 Vector2 FrontNormal(const Element& element, Point2 on_element) {
   if (element.kind == Element::Kind::kSegment) return Left(Normalized(element.b - element.a));
   // The gradient of the circle's equation written about a: exact as the radius grows.

@@ -18,6 +18,9 @@ struct ElementFrame {
 // The place at a fraction in [0, 1] of the element's length.
 ElementFrame FrameAt(const Element& element, double fraction);
 
+// The way back: the fraction of the element's length at which a point of it lies, in [0, 1].
+double FractionAt(const Element& element, Point2 on_element);
+
 // Unit normal of the front at a point of the element.
 Vector2 FrontNormal(const Element& element, Point2 on_element);
 

@@ -15,7 +15,7 @@
 namespace flatlight {
 
 // Who is next: decided by class; then newcomers, who have nothing to show yet; then by the users' rank; then by who
-// came first. Nobody starves: of every kTurnsInARow + 1 turns one is for those who are passed over, if there are any.
+// came first. Nobody starves: after so many turns in a row comes one of those who were passed over.
 template <class Item>
 class FairQueue {
  public:

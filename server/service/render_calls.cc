@@ -90,12 +90,11 @@ absl::StatusOr<JobRun::Restored> MakeJob(Backend& backend, const v1::CreateJobRe
   return JobRun::Restored{std::make_shared<JobSpec>(std::move(spec)), std::move(planned->scene), {}};
 }
 
-// With the records of the job that it names, if any: that job may be deleted before this one is restored.
+// With the records of the job that it names: that job may be deleted before this one is restored.
 absl::StatusOr<v1::CreateJobRequest> WithRecords(const v1::CreateJobRequest& request, JobStore& jobs) {
-  v1::CreateJobRequest whole = request;
-  if (request.records().job().empty()) return whole;
   auto records = RecordsOfJob(request.records(), jobs);
   if (!records.ok()) return records.status();
+  v1::CreateJobRequest whole = request;
   *whole.mutable_records() = *std::move(records);
   return whole;
 }
@@ -142,8 +141,14 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
       return WholeJob(*job);
     }
   }
-  const auto whole = WithRecords(request, backend.jobs);
-  if (!whole.ok()) return whole.status();
+  // Scenes may be large: a copy only where something is added.
+  absl::StatusOr<v1::CreateJobRequest> with_records;
+  const v1::CreateJobRequest* whole = &request;
+  if (!request.records().job().empty()) {
+    with_records = WithRecords(request, backend.jobs);
+    if (!with_records.ok()) return with_records.status();
+    whole = &*with_records;
+  }
   JobSpec spec;
   spec.id = JobId::Random();
   spec.owner = caller.name;

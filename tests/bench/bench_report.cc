@@ -97,4 +97,11 @@ bool BenchTable::WriteCsv(const std::string& path) const {
   return !file.fail();
 }
 
+bool BenchTable::Report(const std::string& path) const {
+  Print();
+  const bool written = WriteCsv(path);
+  if (!written) std::fprintf(stderr, "%s could not be written\n", path.c_str());
+  return written;
+}
+
 }  // namespace flatlight

@@ -35,6 +35,8 @@ class BenchTable {
   void Print() const;
   // False if the file could not be written.
   bool WriteCsv(const std::string& path) const;
+  // Both. False, and it says so, if the file could not be written.
+  bool Report(const std::string& path) const;
 
  private:
   std::vector<std::string> columns_;

@@ -123,10 +123,7 @@ int RunAll(double tolerance, const std::string& csv) {
     if (traits.lambertian && traits.pixels == 0 && traits.camera_pixels == 0 && traits.probe_points > kFewestPoints)
       Measure(named, tolerance, table);
   }
-  table.Print();
-  if (table.WriteCsv(csv)) return 0;
-  std::fprintf(stderr, "%s could not be written\n", csv.c_str());
-  return 1;
+  return table.Report(csv) ? 0 : 1;
 }
 
 }  // namespace

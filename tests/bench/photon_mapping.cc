@@ -138,8 +138,7 @@ int Run(const std::string& csv, const std::string& only) {
   BenchTable table({"SCENE", "METHOD", "PHOTONS", "RMS", "SLOPE", "BIAS", "STATED", "Z^2", "SECONDS"});
   for (const NamedScene& named : GalleryScenes(kPoints))
     if (only.empty() || named.name == only) AddScene(named, table);
-  table.Print();
-  return table.WriteCsv(csv) ? 0 : 1;
+  return table.Report(csv) ? 0 : 1;
 }
 
 }  // namespace

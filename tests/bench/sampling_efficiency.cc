@@ -104,10 +104,7 @@ int Run(const std::string& csv, const std::string& only) {
     Measure({scene, true}, table);
     if (scene.scene->traits().max_reflectance > 0) Measure({scene, false}, table);
   }
-  table.Print();
-  if (table.WriteCsv(csv)) return 0;
-  std::fprintf(stderr, "%s could not be written\n", csv.c_str());
-  return 1;
+  return table.Report(csv) ? 0 : 1;
 }
 
 }  // namespace

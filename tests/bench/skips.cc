@@ -213,8 +213,7 @@ void MeasurePlanning(const std::string& csv) {
       table.Add({scene.name, settings.name, Short(quartiles.lower), Short(quartiles.median), Short(quartiles.upper)});
     }
   }
-  table.Print();
-  if (!table.WriteCsv(csv)) std::fprintf(stderr, "%s could not be written\n", csv.c_str());
+  table.Report(csv);
 }
 
 int Run(const std::string& csv) {

@@ -92,10 +92,7 @@ int Run(const std::string& csv) {
   BenchTable table({"scene", "target", "values", "samples", "most", "mean z", "mean z^2", "+-", "largest z", "bias %",
                     "rms error", "samples x error^2"});
   for (const Case& c : cases) Measure(c, table);
-  table.Print();
-  if (table.WriteCsv(csv)) return 0;
-  std::fprintf(stderr, "%s could not be written\n", csv.c_str());
-  return 1;
+  return table.Report(csv) ? 0 : 1;
 }
 
 }  // namespace

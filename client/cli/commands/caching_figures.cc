@@ -6,11 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "client/cli/commands/console.h"
-#include "client/cli/commands/first_probe.h"
+#include "client/cli/commands/figure_drawing.h"
 #include "client/cli/commands/record_error_figure.h"
-#include "client/cli/commands/result_outputs.h"
-#include "client/cli/commands/session.h"
 #include "client/cli/comparison/comparison.h"
 #include "client/cli/formats/enum_names.h"
 #include "client/cli/text/numbers.h"
@@ -22,23 +19,6 @@ namespace {
 constexpr char kExtrapolation[] = "extrapolation";
 constexpr char kWalls[] = "records-walls";
 constexpr char kErrors[] = "records-errors";
-
-std::string Share(const std::optional<double>& relative) { return relative ? FormatPercent(*relative) : "-"; }
-
-v1::SceneSource GallerySource(const std::string& name) {
-  v1::SceneSource source;
-  source.set_name("scenes/" + name);
-  return source;
-}
-
-// The result of several jobs: what speaks of one of them alone is left out.
-void MakeCommon(const std::string& name, v1::RenderResult& result) {
-  result.set_scene(name);
-  result.clear_settings();
-  result.clear_plan();
-  result.clear_statistics();
-  result.clear_records_seal();
-}
 
 // A polynomial of a degree from point `center`, over a share of the probe to each side.
 v1::ProbeResult Extrapolated(const v1::ProbeResult& exact, int center, int degree) {
@@ -74,15 +54,13 @@ std::vector<std::string> ExtrapolationRow(const v1::ProbeResult& exact, const v1
           FormatPercent(largest)};
 }
 
-CommandResult DrawExtrapolation(const CommandLine& line, const std::vector<Output>& outputs, Session& session,
-                                Console& console, Interruption& interruption) {
-  Console silent(Console::Answer::kMachine, true);
+CommandResult DrawExtrapolation(const FigureDrawing& drawing) {
   v1::Settings settings;
   settings.set_method(v1::Settings::EXACT);
-  auto exact = RenderFirstProbe(session, GallerySource("blocker"), settings, silent);
-  if (!exact.ok()) return session.Explain(exact.status());
+  auto exact = drawing.RenderFirstProbe(GallerySource("blocker"), settings);
+  if (!exact.ok()) return exact.status();
   const v1::ProbeResult truth = exact->probes(0);
-  MakeCommon(line.figure, *exact);
+  MakeCommon(drawing.line.figure, *exact);
   exact->mutable_probes(0)->set_name("exact");
   std::vector<std::vector<std::string>> rows = {{"RECORD AT", "DEGREE", "RMS ERROR", "LARGEST"}};
   for (const double place : {0.2, 0.8}) {
@@ -96,10 +74,10 @@ CommandResult DrawExtrapolation(const CommandLine& line, const std::vector<Outpu
       *exact->add_probes() = std::move(found);
     }
   }
-  console.Say(line.figure + " (gallery:blocker): what a record's gradient and Hessian tell of its surroundings\n\n" +
-              FormatTable(rows));
-  if (absl::Status written = WriteResult(*exact, outputs, console, interruption); !written.ok()) return written;
-  return ExitCode::kDone;
+  return drawing.Deliver(drawing.line.figure +
+                             " (gallery:blocker): what a record's gradient and Hessian tell of its surroundings\n\n" +
+                             FormatTable(rows),
+                         *exact);
 }
 
 // gallery:black-wall with a white wall on the right.
@@ -122,12 +100,10 @@ absl::StatusOr<v1::SceneSource> WhiteWall(Session& session) {
   return source;
 }
 
-CommandResult DrawWalls(const CommandLine& line, const std::vector<Output>& outputs, Session& session, Console& console,
-                        Interruption& interruption) {
+CommandResult DrawWalls(const FigureDrawing& drawing) {
   constexpr std::uint32_t kRecords = 10;
-  Console silent(Console::Answer::kMachine, true);
-  const auto white = WhiteWall(session);
-  if (!white.ok()) return session.Explain(white.status());
+  const auto white = WhiteWall(drawing.session);
+  if (!white.ok()) return drawing.session.Explain(white.status());
   const std::pair<const char*, v1::SceneSource> scenes[] = {
       {"white wall", *white}, {"black wall", GallerySource("black-wall")}, {"no wall", GallerySource("no-wall")}};
   v1::RenderResult all;
@@ -136,8 +112,8 @@ CommandResult DrawWalls(const CommandLine& line, const std::vector<Output>& outp
     v1::Settings settings;
     settings.set_method(v1::Settings::REFERENCE);
     settings.set_derivatives(v1::Settings::NONE);
-    auto truth = RenderFirstProbe(session, source, settings, silent);
-    if (!truth.ok()) return session.Explain(truth.status());
+    auto truth = drawing.RenderFirstProbe(source, settings);
+    if (!truth.ok()) return truth.status();
     *all.add_probes() = truth->probes(0);
     all.mutable_probes(all.probes_size() - 1)->set_name(wall);
     settings.Clear();
@@ -146,8 +122,8 @@ CommandResult DrawWalls(const CommandLine& line, const std::vector<Output>& outp
     settings.set_max_records(kRecords);
     for (const auto control : {v1::Settings::SPLIT_SPHERE, v1::Settings::OCCLUSION_HESSIAN}) {
       settings.set_error_control(control);
-      auto found = RenderFirstProbe(session, source, settings, silent);
-      if (!found.ok()) return session.Explain(found.status());
+      auto found = drawing.RenderFirstProbe(source, settings);
+      if (!found.ok()) return found.status();
       const auto comparison = Compare(*found, *truth, 1.0);
       if (!comparison.ok()) return comparison.status();
       const QuantityComparison& irradiance = comparison->quantities.front();
@@ -159,13 +135,12 @@ CommandResult DrawWalls(const CommandLine& line, const std::vector<Output>& outp
       }
     }
   }
-  MakeCommon(line.figure, all);
-  console.Say(
-      line.figure + ": where " + std::to_string(kRecords) +
-      " records of a floor go that a lamp lights between two walls, of which one is white, black or left out\n\n" +
-      FormatTable(rows));
-  if (absl::Status written = WriteResult(all, outputs, console, interruption); !written.ok()) return written;
-  return ExitCode::kDone;
+  MakeCommon(drawing.line.figure, all);
+  return drawing.Deliver(
+      drawing.line.figure + ": where " + std::to_string(kRecords) +
+          " records of a floor go that a lamp lights between two walls, of which one is white, black or left out\n\n" +
+          FormatTable(rows),
+      all);
 }
 
 }  // namespace
@@ -174,14 +149,9 @@ std::vector<std::string> CachingFigureNames() { return {kExtrapolation, kWalls, 
 
 std::optional<CommandResult> DrawCachingFigure(const CommandLine& line, Interruption& interruption) {
   if (line.figure == kErrors) return DrawRecordErrors(line, interruption);
-  if (line.figure != kExtrapolation && line.figure != kWalls) return std::nullopt;
-  const auto outputs = OutputsOf(line.outputs, line.json);
-  if (!outputs.ok()) return outputs.status();
-  Console console = ConsoleFor(*outputs, line.quiet);
-  const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
-  if (!session.ok()) return session.status();
-  return line.figure == kWalls ? DrawWalls(line, *outputs, **session, console, interruption)
-                               : DrawExtrapolation(line, *outputs, **session, console, interruption);
+  if (line.figure == kExtrapolation) return OpenAndDraw(line, interruption, DrawExtrapolation);
+  if (line.figure == kWalls) return OpenAndDraw(line, interruption, DrawWalls);
+  return std::nullopt;
 }
 
 }  // namespace flatlight

@@ -6,10 +6,7 @@
 
 #include "client/cli/commands/caching_figures.h"
 #include "client/cli/commands/commands.h"
-#include "client/cli/commands/console.h"
-#include "client/cli/commands/first_probe.h"
-#include "client/cli/commands/result_outputs.h"
-#include "client/cli/commands/session.h"
+#include "client/cli/commands/figure_drawing.h"
 #include "client/cli/comparison/comparison.h"
 #include "client/cli/formats/enum_names.h"
 #include "client/cli/text/numbers.h"
@@ -46,8 +43,6 @@ struct PhotonFigure {
   std::vector<double> bandwidths = {0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.2, 2, 4};
 };
 
-std::string Share(const std::optional<double>& relative) { return relative ? FormatPercent(*relative) : "-"; }
-
 // Rows of a table: how far a formulation's derivatives are from exact ones.
 absl::Status AddRows(const std::string& name, const v1::RenderResult& found, const v1::RenderResult& exact,
                      std::vector<std::vector<std::string>>& rows) {
@@ -61,42 +56,29 @@ absl::Status AddRows(const std::string& name, const v1::RenderResult& found, con
   return absl::OkStatus();
 }
 
-CommandResult DrawDerivatives(const DerivativesFigure& figure, const CommandLine& line, Interruption& interruption) {
-  const auto outputs = OutputsOf(line.outputs, line.json);
-  if (!outputs.ok()) return outputs.status();
-  Console console = ConsoleFor(*outputs, line.quiet);
-  const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
-  if (!session.ok()) return session.status();
-  Console silent(Console::Answer::kMachine, true);
-  v1::SceneSource source;
-  source.set_name(std::string("scenes/") + figure.scene);
+CommandResult DrawDerivatives(const DerivativesFigure& figure, const FigureDrawing& drawing) {
+  const v1::SceneSource source = GallerySource(figure.scene);
   v1::Settings settings;
   settings.set_method(v1::Settings::EXACT);
-  const auto exact = RenderFirstProbe(**session, source, settings, silent);
-  if (!exact.ok()) return (*session)->Explain(exact.status());
+  const auto exact = drawing.RenderFirstProbe(source, settings);
+  if (!exact.ok()) return exact.status();
   v1::RenderResult all = *exact;
-  all.set_scene(figure.name);
-  // They speak of one of the results only.
-  all.clear_settings();
-  all.clear_plan();
-  all.clear_statistics();
+  MakeCommon(figure.name, all);
   all.mutable_probes(0)->set_name("exact");
   std::vector<std::vector<std::string>> rows = {{"FORMULATION", "QUANTITY", "RMS ERROR", "RELATIVE", "LARGEST"}};
-  settings = line.settings;
+  settings = drawing.line.settings;
   settings.set_method(v1::Settings::RAY_TRACING);
   for (const auto formulation : {v1::Settings::STRATIFIED, v1::Settings::POLYLINE, v1::Settings::ARC_LENGTH}) {
     settings.set_formulation(formulation);
-    const auto result = RenderFirstProbe(**session, source, settings, silent);
-    if (!result.ok()) return (*session)->Explain(result.status());
+    const auto result = drawing.RenderFirstProbe(source, settings);
+    if (!result.ok()) return result.status();
     const std::string name = OptionName(formulation);
     if (absl::Status added = AddRows(name, *result, *exact, rows); !added.ok()) return added;
     *all.add_probes() = result->probes(0);
     all.mutable_probes(all.probes_size() - 1)->set_name(name);
   }
-  console.Say(std::string(figure.name) + " (gallery:" + figure.scene + "): " + figure.text + "\n\n" +
-              FormatTable(rows));
-  if (absl::Status written = WriteResult(all, *outputs, console, interruption); !written.ok()) return written;
-  return ExitCode::kDone;
+  return drawing.Deliver(
+      std::string(figure.name) + " (gallery:" + figure.scene + "): " + figure.text + "\n\n" + FormatTable(rows), all);
 }
 
 // How far a result's irradiance is from that of another.
@@ -106,26 +88,15 @@ absl::StatusOr<QuantityComparison> IrradianceError(const v1::RenderResult& found
   return comparison->quantities.front();
 }
 
-CommandResult DrawPhotonMap(const PhotonFigure& figure, const CommandLine& line, Interruption& interruption) {
-  const auto outputs = OutputsOf(line.outputs, line.json);
-  if (!outputs.ok()) return outputs.status();
-  Console console = ConsoleFor(*outputs, line.quiet);
-  const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
-  if (!session.ok()) return session.status();
-  Console silent(Console::Answer::kMachine, true);
+CommandResult DrawPhotonMap(const PhotonFigure& figure, const FigureDrawing& drawing) {
+  const v1::SceneSource source = GallerySource(figure.scene);
   v1::Settings settings;
   settings.set_method(v1::Settings::REFERENCE);
   settings.set_derivatives(v1::Settings::NONE);
-  v1::SceneSource source;
-  source.set_name(std::string("scenes/") + figure.scene);
-  const auto reference = RenderFirstProbe(**session, source, settings, silent);
-  if (!reference.ok()) return (*session)->Explain(reference.status());
+  const auto reference = drawing.RenderFirstProbe(source, settings);
+  if (!reference.ok()) return reference.status();
   v1::RenderResult all = *reference;
-  all.set_scene(figure.name);
-  // They speak of one of the results only.
-  all.clear_settings();
-  all.clear_plan();
-  all.clear_statistics();
+  MakeCommon(figure.name, all);
   all.mutable_probes(0)->set_name("reference");
   std::vector<std::vector<std::string>> rows = {{"METHOD", "BANDWIDTH", "RMS ERROR", "RELATIVE", "LARGEST"}};
   const auto add = [&](const std::string& name, const std::string& bandwidth, const v1::RenderResult& result,
@@ -134,14 +105,14 @@ CommandResult DrawPhotonMap(const PhotonFigure& figure, const CommandLine& line,
     *all.add_probes() = result.probes(0);
     all.mutable_probes(all.probes_size() - 1)->set_name(name);
   };
-  settings = line.settings;
+  settings = drawing.line.settings;
   settings.set_method(v1::Settings::PHOTON_MAPPING);
   if (!settings.has_photons()) settings.set_photons(figure.photons);
   v1::Settings density = settings;
   density.clear_samples();
   density.set_final_gather(false);
-  const auto chosen = RenderFirstProbe(**session, source, density, silent);
-  if (!chosen.ok()) return (*session)->Explain(chosen.status());
+  const auto chosen = drawing.RenderFirstProbe(source, density);
+  if (!chosen.ok()) return chosen.status();
   const auto chosen_error = IrradianceError(*chosen, *reference);
   if (!chosen_error.ok()) return chosen_error.status();
   add("density", "chosen at each point", *chosen, *chosen_error);
@@ -153,8 +124,8 @@ CommandResult DrawPhotonMap(const PhotonFigure& figure, const CommandLine& line,
     for (const double bandwidth : figure.bandwidths) {
       density.set_kernel(kernel);
       density.set_bandwidth(bandwidth);
-      const auto result = RenderFirstProbe(**session, source, density, silent);
-      if (!result.ok()) return (*session)->Explain(result.status());
+      const auto result = drawing.RenderFirstProbe(source, density);
+      if (!result.ok()) return result.status();
       const auto error = IrradianceError(*result, *reference);
       if (!error.ok()) return error.status();
       if (error->rms >= best_error.rms) continue;
@@ -165,16 +136,16 @@ CommandResult DrawPhotonMap(const PhotonFigure& figure, const CommandLine& line,
   }
   add("best density", best_name, best, best_error);
   settings.set_derivatives(v1::Settings::NONE);
-  const auto gathered = RenderFirstProbe(**session, source, settings, silent);
-  if (!gathered.ok()) return (*session)->Explain(gathered.status());
+  const auto gathered = drawing.RenderFirstProbe(source, settings);
+  if (!gathered.ok()) return gathered.status();
   const auto gathered_error = IrradianceError(*gathered, *reference);
   if (!gathered_error.ok()) return gathered_error.status();
   add("final gather", "chosen", *gathered, *gathered_error);
-  console.Say(std::string(figure.name) + " (gallery:" + figure.scene + "): " + std::to_string(settings.photons()) +
-              " photons; a final gather has an RMS error " + FormatValue(best_error.rms / gathered_error->rms) +
-              " times smaller than the best density of the same map\n\n" + FormatTable(rows));
-  if (absl::Status written = WriteResult(all, *outputs, console, interruption); !written.ok()) return written;
-  return ExitCode::kDone;
+  return drawing.Deliver(std::string(figure.name) + " (gallery:" + figure.scene +
+                             "): " + std::to_string(settings.photons()) + " photons; a final gather has an RMS error " +
+                             FormatValue(best_error.rms / gathered_error->rms) +
+                             " times smaller than the best density of the same map\n\n" + FormatTable(rows),
+                         all);
 }
 
 }  // namespace
@@ -190,10 +161,14 @@ std::vector<std::string> FigureNames() {
 
 CommandResult Figure(const CommandLine& line, Interruption& interruption) {
   for (const DerivativesFigure& figure : kDerivatives) {
-    if (line.figure == figure.name) return DrawDerivatives(figure, line, interruption);
+    if (line.figure == figure.name)
+      return OpenAndDraw(line, interruption,
+                         [&](const FigureDrawing& drawing) { return DrawDerivatives(figure, drawing); });
   }
   if (const auto drawn = DrawCachingFigure(line, interruption)) return *drawn;
-  if (const PhotonFigure photons; line.figure == photons.name) return DrawPhotonMap(photons, line, interruption);
+  if (const PhotonFigure photons; line.figure == photons.name)
+    return OpenAndDraw(line, interruption,
+                       [&](const FigureDrawing& drawing) { return DrawPhotonMap(photons, drawing); });
   const ConvergenceFigure convergence;
   if (line.figure == convergence.name) {
     CommandLine bench = line;

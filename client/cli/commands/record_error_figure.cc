@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "client/cli/commands/console.h"
-#include "client/cli/commands/first_probe.h"
+#include "client/cli/commands/figure_drawing.h"
 #include "client/cli/commands/session.h"
 #include "client/cli/comparison/comparison.h"
 #include "client/cli/formats/enum_names.h"
@@ -43,14 +43,12 @@ struct Line {
 };
 
 absl::StatusOr<std::vector<Line>> Measure(Session& session, Console& console) {
-  Console silent(Console::Answer::kMachine, true);
   std::vector<Line> lines;
   for (const char* scene : kScenes) {
-    v1::SceneSource source;
-    source.set_name(std::string("scenes/") + scene);
+    const v1::SceneSource source = GallerySource(scene);
     v1::Settings settings;
     settings.set_method(v1::Settings::EXACT);
-    const auto truth = RenderFirstProbe(session, source, settings, silent);
+    const auto truth = RenderFirstProbe(session, source, settings);
     if (!truth.ok()) return session.Explain(truth.status());
     settings.set_method(v1::Settings::IRRADIANCE_CACHING);
     for (std::uint32_t degree = 0; degree < kDegrees; ++degree) {
@@ -62,7 +60,7 @@ absl::StatusOr<std::vector<Line>> Measure(Session& session, Console& console) {
         console.ShowLine(line.scene + ", degree " + std::to_string(degree) + ", " + line.control);
         for (const std::uint32_t budget : kBudgets) {
           settings.set_max_records(budget);
-          const auto found = RenderFirstProbe(session, source, settings, silent);
+          const auto found = RenderFirstProbe(session, source, settings);
           if (!found.ok()) return session.Explain(found.status());
           const auto comparison = Compare(*found, *truth, 1.0);
           if (!comparison.ok()) return comparison.status();

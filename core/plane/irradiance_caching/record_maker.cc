@@ -77,14 +77,7 @@ void RecordMaker::AddReflected(const Receiver& receiver, std::uint64_t key, cons
   if (cancellation.cancelled()) return;
   for (GatheredRay& ray : gathered) {
     // What comes straight from emitters is known better.
-    Spectrum emitted = scene.environment();
-    if (ray.element != ElementId::kNone) {
-      const Side side = Dot(FrontNormal(scene.element(ray.element), receiver.position + ray.to), ray.normal) > 0
-                            ? Side::kFront
-                            : Side::kBack;
-      emitted = scene.curve_of(ray.element).EmittedRadiance(side);
-    }
-    ray.radiance = ray.radiance - emitted;
+    ray.radiance = ray.radiance - EmittedToward(scene, receiver, ray);
     for (double& value : ray.radiance.value) value = std::max(value, 0.0);
   }
   record.known = kKnownOfRays;

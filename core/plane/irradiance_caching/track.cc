@@ -40,16 +40,7 @@ bool InRow(const Scene& scene, const RayCaster& caster, const Receiver& first, c
 
 // Where on an element, by the arc length of its curve, a point of it lies.
 double ArcLengthAt(const Element& element, Point2 p) {
-  double fraction;
-  if (element.kind == Element::Kind::kSegment) {
-    const Vector2 along = element.b - element.a;
-    fraction = Dot(p - element.a, along) / LengthSquared(along);
-  } else {
-    const Vector2 radial = element.radial_a + (p - element.a) / element.radius;
-    fraction = AngleOf(Dot(element.radial_a, radial), std::abs(Cross(element.radial_a, radial))) /
-               std::abs(element.sweep_angle);
-  }
-  return element.arc_begin + std::clamp(fraction, 0.0, 1.0) * element.length;
+  return element.arc_begin + FractionAt(element, p) * element.length;
 }
 
 // Where curves stand on a run of elements, or cross it: light may jump there, and no record reaches past it.

@@ -5,19 +5,8 @@
 
 #include "core/plane/ray_tracing/formulations.h"
 #include "core/plane/ray_tracing/hemicircle_gather.h"
-#include "core/scene/element_frame.h"
 
 namespace flatlight {
-namespace {
-
-// What a tree that sees emitters has of the one that a ray meets first.
-Spectrum EmittedToward(const Scene& scene, const Receiver& receiver, const GatheredRay& ray) {
-  if (ray.element == ElementId::kNone) return scene.environment();
-  const Vector2 front = FrontNormal(scene.element(ray.element), receiver.position + ray.to);
-  return scene.curve_of(ray.element).EmittedRadiance(Dot(front, ray.normal) > 0 ? Side::kFront : Side::kBack);
-}
-
-}  // namespace
 
 GatheredLight GatherReflected(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
                               GatherGradient gradient, const Cancellation& cancellation) {

@@ -16,18 +16,7 @@ namespace {
 // Directions that differ by less are one.
 constexpr double kSameDirection = 1e-9;
 
-double ArcLengthOn(const Element& element, Point2 p) {
-  double fraction;
-  if (element.kind == Element::Kind::kSegment) {
-    const Vector2 along = element.b - element.a;
-    fraction = Dot(p - element.a, along) / LengthSquared(along);
-  } else {
-    const Vector2 radial = element.radial_a + (p - element.a) / element.radius;
-    fraction = AngleOf(Dot(element.radial_a, radial), std::abs(Cross(element.radial_a, radial))) /
-               std::abs(element.sweep_angle);
-  }
-  return std::clamp(fraction, 0.0, 1.0) * element.length;
-}
+double ArcLengthOn(const Element& element, Point2 p) { return FractionAt(element, p) * element.length; }
 
 // Whether one goes on smoothly where the other ends.
 bool GoesOn(const Element& before, const Element& after) {

@@ -6,6 +6,7 @@
 
 #include "core/plane/ray_tracing/end_finder.h"
 #include "core/sampling/hash.h"
+#include "core/scene/element_frame.h"
 
 namespace flatlight {
 namespace {
@@ -101,6 +102,12 @@ void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t r
     }
   }
   gathered.assign(all.begin() + 1, all.end() - 1);
+}
+
+Spectrum EmittedToward(const Scene& scene, const Receiver& receiver, const GatheredRay& ray) {
+  if (ray.element == ElementId::kNone) return scene.environment();
+  const Vector2 front = FrontNormal(scene.element(ray.element), receiver.position + ray.to);
+  return scene.curve_of(ray.element).EmittedRadiance(Dot(front, ray.normal) > 0 ? Side::kFront : Side::kBack);
 }
 
 Spectrum IrradianceOf(const std::vector<GatheredRay>& gathered) {

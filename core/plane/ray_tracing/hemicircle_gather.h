@@ -43,6 +43,9 @@ void GatherHemicircle(const RayTree& tree, const Receiver& receiver, std::uint32
 void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
                   const Cancellation& cancellation, std::vector<GatheredRay>& gathered, double& cast);
 
+// What comes straight from an emitter, or from the sky, along the ray.
+Spectrum EmittedToward(const Scene& scene, const Receiver& receiver, const GatheredRay& ray);
+
 // Irradiance: radiance times stretch.
 Spectrum IrradianceOf(const std::vector<GatheredRay>& gathered);
 

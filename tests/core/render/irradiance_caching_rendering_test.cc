@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/render/plan.h"
+#include "tests/support/transport/mistakes.h"
 #include "tests/support/transport/render.h"
 #include "tests/support/transport/scene_maker.h"
 
@@ -305,15 +306,6 @@ TEST(IrradianceCachingRenderingTest, ReasonsSpeakOfRaysWhereThereAreSome) {
       any = any || entry.reason.find("rays") != std::string::npos;
     EXPECT_EQ(any, rays);
   }
-}
-
-std::vector<std::string> Mistakes(const Scene& scene, const Settings& settings) {
-  Diagnostics diagnostics;
-  EXPECT_FALSE(MakePlan(scene, settings, diagnostics).has_value());
-  std::vector<std::string> messages;
-  for (const Diagnostic& diagnostic : diagnostics.kept())
-    messages.push_back(diagnostic.path + ": " + diagnostic.message);
-  return messages;
 }
 
 TEST(IrradianceCachingRenderingTest, SettingsThatItWouldIgnoreAreMistakes) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/transport/mistakes.h"
 #include "tests/support/transport/render.h"
 #include "tests/support/transport/scene_maker.h"
 
@@ -168,14 +169,7 @@ TEST(PhotonMappingTest, AgreesWithTheReference) {
 }
 
 TEST(PhotonMappingTest, AgreesWithPathTracingAmongAllMaterialsAndLights) {
-  SceneMaker maker;
-  maker.Polyline("room", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, true, {.reflectance = {0.5, 0.6, 0.7}})
-      .Probe("room", 24);
-  maker.Arc("lamp", {{-0.5, 0.5}, 0.25, 0, -kFullTurn}, {.radiance = {4, 3, 2}});
-  maker.Arc("ball", {{0.3, 0.3}, 0.2, 0, -kFullTurn}, {.material = DielectricDescription{1.5}});
-  maker.Segment("gloss", {0.95, 0.9}, {0.95, -0.9}, {.material = PhongDescription{{0.8}, 20}});
-  maker.Segment("metal", {0.9, -0.95}, {-0.9, -0.95}, {.material = ConductorDescription{{0.9}, 0.4}});
-  maker.Segment("mirror", {-0.95, -0.3}, {-0.95, 0.3}, {.material = MirrorDescription{{0.9}}});
+  SceneMaker maker = RoomOfAllMaterials();
   maker.Bezier("curtain", {{-0.8, 0.9}, {-0.5, 0.8}, {-0.9, 0.7}, {-0.85, 0.5}}, {.reflectance = {0.3, 0.2, 0.1}});
   maker.Probe("gloss", 12).Probe("mirror", 12).Probe("curtain", 12);
   const auto scene = maker.Build();
@@ -410,15 +404,6 @@ TEST(PhotonMappingTest, DarkScenesAreDark) {
     for (const ProbeField& probe : ended.field->probes)
       for (const double value : probe.irradiance) EXPECT_EQ(value, 0);
   }
-}
-
-std::vector<std::string> Mistakes(const Scene& scene, const Settings& settings) {
-  Diagnostics diagnostics;
-  EXPECT_FALSE(MakePlan(scene, settings, diagnostics).has_value());
-  std::vector<std::string> messages;
-  for (const Diagnostic& diagnostic : diagnostics.kept())
-    messages.push_back(diagnostic.path + ": " + diagnostic.message);
-  return messages;
 }
 
 TEST(PhotonMappingTest, SettingsThatItWouldIgnoreAreMistakes) {

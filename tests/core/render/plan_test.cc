@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/render/skips.h"
+#include "tests/support/transport/mistakes.h"
 #include "tests/support/transport/scene_maker.h"
 
 namespace flatlight {
@@ -23,15 +24,6 @@ std::shared_ptr<const Scene> Black() { return UnitLight().Probe("floor", 5).Buil
 std::shared_ptr<const Scene> Reflecting() { return FurnishedRoom(true, 5).Build(); }
 
 // "path: message" of every mistake.
-std::vector<std::string> Mistakes(const Scene& scene, const Settings& settings) {
-  Diagnostics diagnostics;
-  const bool planned = MakePlan(scene, settings, diagnostics).has_value();
-  EXPECT_EQ(planned, diagnostics.empty());
-  std::vector<std::string> mistakes;
-  for (const Diagnostic& d : diagnostics.kept()) mistakes.push_back(d.path + ": " + d.message);
-  return mistakes;
-}
-
 Plan PlanFor(const Scene& scene, const Settings& settings = {}) {
   Diagnostics diagnostics;
   return MakePlan(scene, settings, diagnostics).value();

@@ -17,8 +17,6 @@
 namespace flatlight {
 namespace {
 
-constexpr double kFullTurn = 2 * std::numbers::pi;
-
 Settings Branching(std::uint32_t samples, std::uint32_t seed = 0) {
   Settings settings;
   settings.method = Method::kRayTracing;
@@ -57,15 +55,7 @@ TEST(RayTracingTest, StatedErrorsTellTheTruthInAFurnace) {
 }
 
 TEST(RayTracingTest, AgreesWithPathTracingAmongAllMaterialsAndLights) {
-  SceneMaker maker;
-  maker.Polyline("room", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, true, {.reflectance = {0.5, 0.6, 0.7}})
-      .Probe("room", 24);
-  maker.Arc("lamp", {{-0.5, 0.5}, 0.25, 0, -kFullTurn}, {.radiance = {4, 3, 2}});
-  maker.Arc("ball", {{0.3, 0.3}, 0.2, 0, -kFullTurn}, {.material = DielectricDescription{1.5}});
-  maker.Segment("gloss", {0.95, 0.9}, {0.95, -0.9}, {.material = PhongDescription{{0.8}, 20}});
-  maker.Segment("metal", {0.9, -0.95}, {-0.9, -0.95}, {.material = ConductorDescription{{0.9}, 0.4}});
-  maker.Segment("mirror", {-0.95, -0.3}, {-0.95, 0.3}, {.material = MirrorDescription{{0.9}}});
-  const auto scene = maker.Build();
+  const auto scene = RoomOfAllMaterials().Build();
   const ProbeField paths = Render(scene, Sampled(16384)).field->probes[0];
   const ProbeField trees = Render(scene, Branching(2048)).field->probes[0];
   double sum = 0;

@@ -17,6 +17,7 @@
 #include "core/render/plan.h"
 #include "core/render/rendering.h"
 #include "tests/support/transport/honest_errors.h"
+#include "tests/support/transport/mistakes.h"
 #include "tests/support/transport/render.h"
 #include "tests/support/transport/scene_maker.h"
 
@@ -196,15 +197,6 @@ TEST(ReferenceRenderingTest, TheDarkNeedsNoWork) {
   const Ended ended = Render(SquareRoom({.reflectance = {0.5}}, 2).Build(), Reference(1e-6));
   EXPECT_EQ(ended.field->probes[0].irradiance, std::vector<double>(2, 0.0));
   EXPECT_EQ(ended.field->error_bound, 0);
-}
-
-std::vector<std::string> Mistakes(const Scene& scene, const Settings& settings) {
-  Diagnostics diagnostics;
-  const bool planned = MakePlan(scene, settings, diagnostics).has_value();
-  EXPECT_EQ(planned, diagnostics.count() == 0);
-  std::vector<std::string> messages;
-  for (const Diagnostic& d : diagnostics.kept()) messages.push_back(d.path + ": " + d.message);
-  return messages;
 }
 
 TEST(ReferenceRenderingTest, RefusesWhatItCannotDo) {

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <numbers>
 #include <utility>
 
 namespace flatlight {
@@ -119,6 +120,19 @@ SceneMaker UnitLight() {
   SceneMaker maker;
   maker.Segment("floor", {0, 0}, {1, 0});
   maker.Segment("light", {1, 1}, {0, 1}, {.radiance = {1}});
+  return maker;
+}
+
+SceneMaker RoomOfAllMaterials() {
+  constexpr double kFullTurn = 2 * std::numbers::pi;
+  SceneMaker maker;
+  maker.Polyline("room", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, true, {.reflectance = {0.5, 0.6, 0.7}})
+      .Probe("room", 24);
+  maker.Arc("lamp", {{-0.5, 0.5}, 0.25, 0, -kFullTurn}, {.radiance = {4, 3, 2}});
+  maker.Arc("ball", {{0.3, 0.3}, 0.2, 0, -kFullTurn}, {.material = DielectricDescription{1.5}});
+  maker.Segment("gloss", {0.95, 0.9}, {0.95, -0.9}, {.material = PhongDescription{{0.8}, 20}});
+  maker.Segment("metal", {0.9, -0.95}, {-0.9, -0.95}, {.material = ConductorDescription{{0.9}, 0.4}});
+  maker.Segment("mirror", {-0.95, -0.3}, {-0.95, 0.3}, {.material = MirrorDescription{{0.9}}});
   return maker;
 }
 

@@ -59,6 +59,10 @@ SceneMaker SquareRoom(const Look& look, std::uint32_t points_per_wall);
 // A floor from (0,0) to (1,0), unit light of radiance 1 above it at height 1, facing down; black. (THEORY 16)
 SceneMaker UnitLight();
 
+// A coloured room with a round lamp, a ball of glass, and gloss, metal and a mirror before its walls, which have
+// probes.
+SceneMaker RoomOfAllMaterials();
+
 // Rooms with everything in them: a box with coloured walls, two lamps, a disc and a blocker.
 SceneMaker FurnishedRoom(bool grey, std::uint32_t points_per_wall);
 
