@@ -78,6 +78,7 @@ void Scheduler::Resubmit(const JobRecord& job, JobRun::Restore restore) {
 
 void Scheduler::Enter(const RunPtr& run) {
   untold_.push_back(run->spec->id);
+  run->entered = run->stopwatch.Now();
   runs_[run->spec->id] = run;
   accounts_.Enter(run->spec->owner);
   waiting_.Push(run->Entry(), run);
@@ -112,6 +113,9 @@ void Scheduler::Admit() {
     (*run)->stage = JobRun::Stage::kPreparing;
     (*run)->state.queue.reset();
     accounts_.TakePlace((*run)->spec->owner);
+    if (options_.events != nullptr) {
+      options_.events->Admitted(*(*run)->spec, (*run)->stopwatch.Now() - (*run)->entered);
+    }
     preparing_.Push((*run)->Entry(), *run);
     starters_->Post(0, [this] { PrepareNext(); });
   }
@@ -171,6 +175,10 @@ void Scheduler::End(JobRun& run, JobPhase phase) {
   run.state.queue.reset();
   run.state.end_time = std::chrono::system_clock::now();
   Publish(run);
+  if (options_.events != nullptr) {
+    if (run.cancel_requested) options_.events->Cancelled(*run.spec, clock_.Now() - *run.cancel_requested);
+    options_.events->Ended(*run.spec, run.state);
+  }
   runs_.erase(run.spec->id);
   FreeQuota(run.spec->owner);
   Admit();
@@ -186,6 +194,7 @@ Scheduler::RunPtr Scheduler::Find(const JobId& id) {
 void Scheduler::RequestCancel(const RunPtr& run) {
   if (run->cancellation.cancelled()) return;
   run->cancellation.Cancel();
+  run->cancel_requested = clock_.Now();
   if (run->stage == JobRun::Stage::kWaiting || run->stage == JobRun::Stage::kPreparing) {
     waiting_.Remove(run->Entry(), run);
     preparing_.Remove(run->Entry(), run);
@@ -291,6 +300,19 @@ absl::Status Scheduler::Delete(const JobId& id) {
   }
   TellListener();
   return absl::OkStatus();
+}
+
+SchedulerLoad Scheduler::Load() {
+  SchedulerLoad load;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, run] : runs_) {
+    SchedulerLoad::User& user = load.users[run->spec->owner];
+    ++(run->state.phase == JobPhase::kPaused   ? user.paused
+       : run->stage == JobRun::Stage::kWaiting ? user.waiting
+                                               : user.running);
+    user.cpu_seconds += run->state.cpu_seconds;
+  }
+  return load;
 }
 
 void Scheduler::Suspend(JobRun& run) {
