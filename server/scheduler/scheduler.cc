@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "server/store/error.h"
@@ -313,6 +314,30 @@ SchedulerLoad Scheduler::Load() {
     user.cpu_seconds += run->state.cpu_seconds;
   }
   return load;
+}
+
+std::vector<JobId> Scheduler::Unended(std::size_t most) {
+  struct Place {
+    int group = 0;
+    WallTime created;
+    JobId id;
+  };
+  std::vector<Place> places;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, run] : runs_) {
+      const int group = run->state.phase == JobPhase::kPaused ? 2 : run->has_place() ? 0 : 1;
+      places.push_back({group, run->spec->create_time, id});
+    }
+  }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return std::tie(a.group, a.created, a.id.uuid()) < std::tie(b.group, b.created, b.id.uuid());
+  });
+  std::vector<JobId> ids;
+  for (const Place& place : places) {
+    if (ids.size() < most) ids.push_back(place.id);
+  }
+  return ids;
 }
 
 void Scheduler::Suspend(JobRun& run) {

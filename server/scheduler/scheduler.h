@@ -80,6 +80,8 @@ class Scheduler {
   // Cancels and removes.
   absl::Status Delete(const JobId& id);
   SchedulerLoad Load();
+  // Of those that have not ended, at most so many: those with a place, that wait, that rest; the oldest first.
+  std::vector<JobId> Unended(std::size_t most);
   // Refuses new jobs, and waits until nothing works any more. Jobs of a durable store are left as they are, with a
   // checkpoint; others are cancelled.
   void Stop();

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -44,6 +45,10 @@ class CallTelemetry {
     grpc::Status status;
   };
   std::string NextRequestId();
+  const Metrics& metrics() const { return metrics_; }
+  double uptime_seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
   bool logs() const { return calls_ != nullptr || audit_ != nullptr; }
   void Ended(const grpc::ServerContextBase* context, const Call& call);
 
@@ -60,6 +65,7 @@ class CallTelemetry {
   Shard& ShardOf(const grpc::ServerContextBase* context);
 
   Metrics& metrics_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   JsonLog* const calls_;
   JsonLog* const audit_;
   std::unordered_set<std::string> methods_;  // Of the services.

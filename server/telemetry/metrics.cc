@@ -62,6 +62,11 @@ class Looks final : public prometheus::Collectable {
     read_ = std::move(read);
   }
 
+  Readings Read() const {
+    const std::lock_guard lock(mutex_);
+    return read_ ? read_() : Readings{};
+  }
+
   std::vector<MetricFamily> Collect() const override {
     std::vector<MetricFamily> families;
     const ProcessReadings process = ReadProcess();
@@ -196,7 +201,11 @@ void Metrics::Close() {
   parts_->looks->ReadWith(nullptr);
 }
 
+Readings Metrics::Read() const { return parts_->looks->Read(); }
+
 double Metrics::rays() const { return parts_->rays.Value(); }
+
+double Metrics::job_cpu_seconds() const { return parts_->job_cpu.Value(); }
 
 std::string Metrics::Text() const {
   std::vector<MetricFamily> families = parts_->registry->Collect();

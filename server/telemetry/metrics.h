@@ -43,8 +43,11 @@ class Metrics final : public SchedulerEvents {
   void ReadWith(std::function<Readings()> read);
   void Close();
 
-  // Rays since the start.
+  // What is read at this moment; nothing after Close.
+  Readings Read() const;
+  // Since the start.
   double rays() const;
+  double job_cpu_seconds() const;
 
   // Prometheus' text format.
   std::string Text() const;

@@ -145,6 +145,39 @@ class ObservingTest(CliCase):
         self.run_cli("jobs")
         self.assertGreaterEqual(parse(self.read_metrics(daemon))["flatlight_log_lines_lost_total"], 1)
 
+    def test_top_shows_jobs_users_and_rates_in_80_columns(self):
+        self.serve()
+        endless = [self.run_cli("submit", "gallery:cornell", "--samples", "1000000000", "--quiet").stdout.strip()
+                   for _ in range(3)]
+        deadline = time.monotonic() + 60
+        while {self.jobs()[job]["state"] for job in endless} != {"RUNNING"}:
+            self.assertLess(time.monotonic(), deadline)
+        self.run_cli("pause", endless[1])
+        text = self.run_cli("top", "--once").stdout
+        lines = text.splitlines()
+        self.assertLessEqual(max(map(len, lines)), 80, text)
+        self.assertRegex(text, r"jobs +2 running, 0 waiting, 1 paused; 0 watches")
+        self.assertRegex(text, r"work +[\d.]+ M rays/s on \d\.\d\d of \d+ processors?")
+        self.assertRegex(text, r"(?m)^anonymous +2 +0 +1 ")
+        rows = [line.split() for line in lines if line[:8] in {job[5:13] for job in endless}]
+        self.assertEqual([row[2] for row in rows], ["running", "running", "paused"])
+        self.assertEqual(rows[2][0], endless[1][5:13])
+        self.assertIn("cornell", rows[2])
+        activity = json.loads(self.run_cli("top", "--json").stdout)
+        self.assertGreater(activity["cpuSeconds"], activity["jobCpuSeconds"])
+        self.assertEqual(len(activity["jobs"]), 3)
+
+    def test_pruning_deletes_what_ended_long_ago(self):
+        self.serve()
+        ended = self.run_cli("submit", "gallery:unit-light", "--quiet").stdout.strip()
+        endless = self.run_cli("submit", "gallery:cornell", "--samples", "1000000000", "--quiet").stdout.strip()
+        self.run_cli("watch", ended, "--quiet")
+        self.run_cli("jobs", "--prune", "1h")
+        self.assertEqual(set(self.jobs()), {ended, endless})
+        self.assertIn("--prune: '5x'", self.run_cli("jobs", "--prune", "5x", status=2).stderr)
+        self.run_cli("jobs", "--prune", "0")
+        self.assertEqual(set(self.jobs()), {endless})
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1], verbosity=1)
