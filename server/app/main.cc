@@ -41,6 +41,8 @@ int Run(const DaemonOptions& options) {
   server_options.address = options.listen;
   server_options.threads = options.threads;
   server_options.data = options.data;
+  server_options.metrics_address = options.metrics;
+  server_options.log = options.log;
   server_options.checkpoint_interval =
       std::chrono::milliseconds(static_cast<std::int64_t>(1000 * options.checkpoint_interval));
   server_options.token = TakeTokenFromEnvironment();
@@ -56,7 +58,13 @@ int Run(const DaemonOptions& options) {
   }
   // Programs that start this one read the address from this line.
   std::fprintf(stderr, "flatlightd %s listening on %s\n", BuildVersion().c_str(), (*server)->address().c_str());
-  signals.Await(options.exit_with_parent);
+  if (!options.metrics.empty()) {
+    std::fprintf(stderr, "flatlightd metrics at http://%s/metrics\n", (*server)->metrics_address().c_str());
+  }
+  signals.Await(options.exit_with_parent, [&] {
+    const absl::Status reopened = (*server)->ReopenLogs();
+    if (!reopened.ok()) Fail(reopened, kCannotServe);
+  });
   std::signal(SIGALRM, [](int) { _exit(0); });
   alarm(kHardStopSeconds);
   (*server)->Drain(kDrainGrace);

@@ -25,6 +25,9 @@ std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int p
                  "seconds between checkpoints of a job, at least (with --data)")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 3600.0));
+  app.add_option("--metrics", options.metrics,
+                 "HOST:PORT on this machine: serve metrics for Prometheus at http://HOST:PORT/metrics");
+  app.add_option("--log", options.log, "a file that gets a line of JSON for each call, or - for standard error");
   app.add_flag("--exit-with-parent", options.exit_with_parent, "end when standard input ends");
   CLI::App* backup =
       app.add_subcommand("backup", "copy the folder of a server, which may be running: --data DIR BACKUP");

@@ -17,6 +17,8 @@ struct DaemonOptions {
   double checkpoint_interval = 3;  // s.
   std::string back_up_to;          // A new folder: copy `data` there, and serve nothing.
   std::string restore_from;        // A backup: make `data` from it, and serve nothing.
+  std::string metrics;             // HOST:PORT for Prometheus; empty: none.
+  std::string log;                 // A file of calls, or "-"; empty: none.
   bool exit_with_parent = false;   // End when standard input does.
 };
 

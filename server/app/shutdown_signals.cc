@@ -26,6 +26,7 @@ ShutdownSignals::ShutdownSignals() {
   sigemptyset(&signals_);
   sigaddset(&signals_, SIGTERM);
   sigaddset(&signals_, SIGINT);
+  sigaddset(&signals_, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
   // A client that goes away is an error of a call, not of the process.
   std::signal(SIGPIPE, SIG_IGN);
@@ -33,7 +34,7 @@ ShutdownSignals::ShutdownSignals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void ShutdownSignals::Await(bool watch_stdin) const {
+void ShutdownSignals::Await(bool watch_stdin, const std::function<void()>& reload) const {
   const int signal_fd = signalfd(-1, &signals_, SFD_CLOEXEC);
   if (signal_fd < 0) {
     std::perror("signalfd");
@@ -45,7 +46,9 @@ void ShutdownSignals::Await(bool watch_stdin) const {
     if (poll(sources.data(), count, -1) < 0) continue;
     if (sources[0].revents != 0) {
       signalfd_siginfo taken;
-      if (read(signal_fd, &taken, sizeof(taken)) == sizeof(taken)) break;
+      if (read(signal_fd, &taken, sizeof(taken)) != sizeof(taken)) continue;
+      if (taken.ssi_signo != SIGHUP) break;
+      reload();
     }
     if (watch_stdin && sources[1].revents != 0 && AtEnd()) break;
   }

@@ -3,18 +3,19 @@
 #define FLATLIGHT_SERVER_APP_SHUTDOWN_SIGNALS_H_
 
 #include <csignal>
+#include <functional>
 
 namespace flatlight {
 
-// SIGTERM, SIGINT, and the end of standard input, as things to wait for. To be made before any thread starts, since
-// threads inherit which signals are blocked.
+// SIGTERM, SIGINT, SIGHUP, and the end of standard input, as things to wait for. To be made before any thread starts,
+// since threads inherit which signals are blocked.
 class ShutdownSignals {
  public:
   ShutdownSignals();
 
-  // Returns at the first signal, or with `watch_stdin` at the end of standard input. From then on a signal ends the
-  // process at once.
-  void Await(bool watch_stdin) const;
+  // Returns at the first SIGTERM or SIGINT, or with `watch_stdin` at the end of standard input. From then on a signal
+  // ends the process at once. Until then, each SIGHUP calls `reload`.
+  void Await(bool watch_stdin, const std::function<void()>& reload) const;
 
  private:
   sigset_t signals_;

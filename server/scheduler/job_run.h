@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
@@ -59,6 +60,9 @@ struct JobRun {
   Stopwatch stopwatch;                   // Stands still while the job is paused.
   Clock::Time started;                   // On the stopwatch.
   Clock::Time published;
+  Clock::Time entered;                          // On the stopwatch: accepted or restored.
+  std::optional<Clock::Time> cancel_requested;  // On the scheduler's clock.
+  double rays_told = 0;                         // To the scheduler's events.
   // The runner's alone.
   Clock::Duration snapshot_cost{0};
   absl::Status failure;

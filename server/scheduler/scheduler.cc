@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "server/store/error.h"
@@ -78,6 +79,7 @@ void Scheduler::Resubmit(const JobRecord& job, JobRun::Restore restore) {
 
 void Scheduler::Enter(const RunPtr& run) {
   untold_.push_back(run->spec->id);
+  run->entered = run->stopwatch.Now();
   runs_[run->spec->id] = run;
   accounts_.Enter(run->spec->owner);
   waiting_.Push(run->Entry(), run);
@@ -112,6 +114,9 @@ void Scheduler::Admit() {
     (*run)->stage = JobRun::Stage::kPreparing;
     (*run)->state.queue.reset();
     accounts_.TakePlace((*run)->spec->owner);
+    if (options_.events != nullptr) {
+      options_.events->Admitted(*(*run)->spec, (*run)->stopwatch.Now() - (*run)->entered);
+    }
     preparing_.Push((*run)->Entry(), *run);
     starters_->Post(0, [this] { PrepareNext(); });
   }
@@ -171,6 +176,10 @@ void Scheduler::End(JobRun& run, JobPhase phase) {
   run.state.queue.reset();
   run.state.end_time = std::chrono::system_clock::now();
   Publish(run);
+  if (options_.events != nullptr) {
+    if (run.cancel_requested) options_.events->Cancelled(*run.spec, clock_.Now() - *run.cancel_requested);
+    options_.events->Ended(*run.spec, run.state);
+  }
   runs_.erase(run.spec->id);
   FreeQuota(run.spec->owner);
   Admit();
@@ -186,6 +195,7 @@ Scheduler::RunPtr Scheduler::Find(const JobId& id) {
 void Scheduler::RequestCancel(const RunPtr& run) {
   if (run->cancellation.cancelled()) return;
   run->cancellation.Cancel();
+  run->cancel_requested = clock_.Now();
   if (run->stage == JobRun::Stage::kWaiting || run->stage == JobRun::Stage::kPreparing) {
     waiting_.Remove(run->Entry(), run);
     preparing_.Remove(run->Entry(), run);
@@ -291,6 +301,43 @@ absl::Status Scheduler::Delete(const JobId& id) {
   }
   TellListener();
   return absl::OkStatus();
+}
+
+SchedulerLoad Scheduler::Load() {
+  SchedulerLoad load;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, run] : runs_) {
+    SchedulerLoad::User& user = load.users[run->spec->owner];
+    ++(run->state.phase == JobPhase::kPaused   ? user.paused
+       : run->stage == JobRun::Stage::kWaiting ? user.waiting
+                                               : user.running);
+    user.cpu_seconds += run->state.cpu_seconds;
+  }
+  return load;
+}
+
+std::vector<JobId> Scheduler::Unended(std::size_t most) {
+  struct Place {
+    int group = 0;
+    WallTime created;
+    JobId id;
+  };
+  std::vector<Place> places;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, run] : runs_) {
+      const int group = run->state.phase == JobPhase::kPaused ? 2 : run->has_place() ? 0 : 1;
+      places.push_back({group, run->spec->create_time, id});
+    }
+  }
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    return std::tie(a.group, a.created, a.id.uuid()) < std::tie(b.group, b.created, b.id.uuid());
+  });
+  std::vector<JobId> ids;
+  for (const Place& place : places) {
+    if (ids.size() < most) ids.push_back(place.id);
+  }
+  return ids;
 }
 
 void Scheduler::Suspend(JobRun& run) {

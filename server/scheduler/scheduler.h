@@ -26,6 +26,7 @@
 #include "server/scheduler/fair_queue.h"
 #include "server/scheduler/job_checkpoint.h"
 #include "server/scheduler/job_run.h"
+#include "server/scheduler/scheduler_events.h"
 #include "server/scheduler/task_queue.h"
 #include "server/store/job_store.h"
 
@@ -46,6 +47,7 @@ struct SchedulerOptions {
       std::chrono::milliseconds(40);  // Longer where a snapshot costs more than a tenth of it.
   // Of one job; longer where they would cost more than a hundredth of its processor time.
   Clock::Duration checkpoint_interval = std::chrono::seconds(3);
+  SchedulerEvents* events = nullptr;  // Who is told of the work; outlives the scheduler.
 };
 
 class Scheduler {
@@ -77,6 +79,9 @@ class Scheduler {
   absl::StatusOr<JobRecord> Resume(const JobId& id);
   // Cancels and removes.
   absl::Status Delete(const JobId& id);
+  SchedulerLoad Load();
+  // Of those that have not ended, at most so many: those with a place, that wait, that rest; the oldest first.
+  std::vector<JobId> Unended(std::size_t most);
   // Refuses new jobs, and waits until nothing works any more. Jobs of a durable store are left as they are, with a
   // checkpoint; others are cancelled.
   void Stop();

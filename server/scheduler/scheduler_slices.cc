@@ -99,6 +99,8 @@ void Scheduler::PrepareNext() {
     if (run->stage == JobRun::Stage::kEnded) return;
     if (LeavesJobs()) return Suspend(*run);
     run->state.cpu_seconds += cpu_seconds;
+    if (options_.events != nullptr) options_.events->Worked(*run->spec, 0, cpu_seconds);
+    if (rendering != nullptr) run->rays_told = rendering->Progress().rays;
     run->rendering = std::move(rendering);
     if (!failure.ok()) {
       run->state.error = failure;
@@ -239,6 +241,13 @@ void Scheduler::RunSlice(JobRun& run) {
   std::unique_ptr<Rendering> finished;  // Destroyed without the lock.
   const std::lock_guard lock(mutex_);
   accounts_.Charge(run.spec->owner, cpu_seconds);
+  if (options_.events != nullptr) {
+    options_.events->Worked(*run.spec, std::max(0.0, next.progress.rays - run.rays_told), cpu_seconds);
+    run.rays_told = next.progress.rays;
+    if (first && next.field != nullptr) {
+      options_.events->FirstPicture(*run.spec, run.stopwatch.Now() - run.entered);
+    }
+  }
   if (!run.failure.ok()) {
     run.state.cpu_seconds = next.cpu_seconds;
     run.state.error = run.failure;

@@ -8,6 +8,7 @@
 #include "core/execution/executor.h"
 #include "server/scheduler/scheduler.h"
 #include "server/scheduler/task_queue.h"
+#include "server/service/call_telemetry.h"
 #include "server/service/calls_under_way.h"
 #include "server/service/guard.h"
 #include "server/service/limits.h"
@@ -30,6 +31,7 @@ struct Backend {
   // For work that takes longer than an event thread may: requests of ordinary size, and those that may take seconds.
   TaskQueue& quick;
   TaskQueue& slow;
+  CallTelemetry& telemetry;
   std::atomic<bool> draining = false;
   CallsUnderWay calls = {};
 };

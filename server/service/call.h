@@ -4,7 +4,9 @@
 #ifndef FLATLIGHT_SERVER_SERVICE_CALL_H_
 #define FLATLIGHT_SERVER_SERVICE_CALL_H_
 
+#include <concepts>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "absl/status/statusor.h"
@@ -40,6 +42,27 @@ inline Proceed WhileWanted(const Backend& backend, const grpc::CallbackServerCon
   };
 }
 
+// The job or scene that an answered call is about; empty if there is none, or not yet (an upload under way).
+template <class Request, class Response>
+std::string ResourceOf(const Request& request, const absl::StatusOr<Response>& response) {
+  if constexpr (requires {
+                  request.total_bytes();
+                  response->received_bytes();
+                }) {
+    return response.ok() && response->received_bytes() == request.total_bytes() ? response->name() : "";
+  } else if constexpr (requires {
+                         { request.name() } -> std::convertible_to<std::string>;
+                       }) {
+    return request.name();
+  } else if constexpr (requires {
+                         { response->name() } -> std::convertible_to<std::string>;
+                       }) {
+    return response.ok() ? response->name() : "";
+  } else {
+    return "";
+  }
+}
+
 // Answers a unary call with `work(caller, request)`, a StatusOr<Response>, run in `lane(request)`.
 template <class Request, class LaneOf, class Work>
 grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* context, const grpc::ByteBuffer* bytes,
@@ -50,10 +73,14 @@ grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* 
     reactor->Finish(ToGrpcStatus(caller.status()));
     return reactor;
   }
-  const auto finish = [reactor, answer, work, caller = *std::move(caller),
+  backend.telemetry.NoteCaller(*context, caller->name);
+  const auto finish = [&backend, context, reactor, answer, work, caller = *std::move(caller),
                        ticket = backend.calls.Enter()](const Request& request) {
     auto response = work(caller, request);
     if (response.ok()) *answer = ToBytes(*response);
+    if (const std::string name = ResourceOf(request, response); !name.empty()) {
+      backend.telemetry.NoteResource(*context, name);
+    }
     reactor->Finish(ToGrpcStatus(response.status()));
   };
   const auto parse = [reactor, bytes](Request& request) {

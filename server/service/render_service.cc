@@ -90,8 +90,10 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::WatchJob(Context* con
 absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context& context, const Bytes& bytes) {
   const auto caller = backend_.guard.Authorize(context);
   if (!caller.ok()) return caller.status();
+  backend_.telemetry.NoteCaller(context, caller->name);
   v1::WatchJobRequest request;
   if (absl::Status parsed = FromBytes(bytes, request); !parsed.ok()) return parsed;
+  backend_.telemetry.NoteResource(context, request.name());
   const auto id = ParseJobName(request.name());
   if (!id.ok()) return id.status();
   const double rate = request.has_max_rate() ? request.max_rate() : kDefaultRate;
@@ -114,14 +116,17 @@ absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context
   const auto interval = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
   auto watcher = std::make_shared<Watcher>(hub_, *id, known, interval);
   if (absl::Status added = hub_.Add(*id, watcher); !added.ok()) return added;
+  if (known) ++hub_.counts().resumed;
   return watcher;
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::GetResult(Context* context, const Bytes* bytes) {
   const auto caller = backend_.guard.Authorize(*context);
   if (!caller.ok()) return new RefusedStream(caller.status());
+  backend_.telemetry.NoteCaller(*context, caller->name);
   v1::GetResultRequest request;
   if (absl::Status parsed = FromBytes(*bytes, request); !parsed.ok()) return new RefusedStream(parsed);
+  backend_.telemetry.NoteResource(*context, request.name());
   const auto id = ParseJobName(request.name());
   if (!id.ok()) return new RefusedStream(id.status());
   auto stream = std::make_unique<ResultStream>(backend_.calls.Enter());

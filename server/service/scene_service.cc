@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/scene_service.h"
 
+#include "server/service/activity.h"
 #include "server/service/call.h"
 #include "server/service/scene_calls.h"
 #include "server/service/scene_lane.h"
@@ -52,6 +53,13 @@ grpc::ServerUnaryReactor* ServerService::GetCapabilities(grpc::CallbackServerCon
       backend_, context, request, response, kInlineLane, [this](const Caller&, const v1::GetCapabilitiesRequest&) {
         return absl::StatusOr<v1::GetCapabilitiesResponse>(flatlight::GetCapabilities(backend_));
       });
+}
+
+grpc::ServerUnaryReactor* ServerService::GetActivity(grpc::CallbackServerContext* context,
+                                                     const grpc::ByteBuffer* request, grpc::ByteBuffer* response) {
+  return Answer<v1::GetActivityRequest>(
+      backend_, context, request, response, kQuickLane,
+      [this](const Caller&, const v1::GetActivityRequest& r) { return flatlight::GetActivity(backend_, r); });
 }
 
 }  // namespace flatlight

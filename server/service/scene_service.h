@@ -30,13 +30,15 @@ class SceneService final : public RawSceneService {
   Backend& backend_;
 };
 
-class ServerService final
-    : public v1::ServerService::WithRawCallbackMethod_GetCapabilities<v1::ServerService::Service> {
+class ServerService final : public v1::ServerService::WithRawCallbackMethod_GetCapabilities<
+                                v1::ServerService::WithRawCallbackMethod_GetActivity<v1::ServerService::Service>> {
  public:
   explicit ServerService(Backend& backend) : backend_(backend) {}
 
   grpc::ServerUnaryReactor* GetCapabilities(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
                                             grpc::ByteBuffer* response) override;
+  grpc::ServerUnaryReactor* GetActivity(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
+                                        grpc::ByteBuffer* response) override;
 
  private:
   Backend& backend_;

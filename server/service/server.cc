@@ -6,6 +6,7 @@
 #include <cstring>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "core/execution/clock.h"
 #include "core/execution/thread_pool.h"
@@ -18,6 +19,7 @@
 #include "server/scheduler/task_queue.h"
 #include "server/service/backend.h"
 #include "server/service/build_version.h"
+#include "server/service/call_telemetry.h"
 #include "server/service/job_format.h"
 #include "server/service/listen_address.h"
 #include "server/service/render_calls.h"
@@ -33,6 +35,8 @@
 #include "server/store/memory_scene_store.h"
 #include "server/store/random_bytes.h"
 #include "server/store/storage.h"
+#include "server/telemetry/json_log.h"
+#include "server/telemetry/metrics.h"
 
 namespace flatlight {
 namespace {
@@ -43,6 +47,10 @@ constexpr std::size_t kMaxBuiltSceneBytes = 1u << 30;
 constexpr std::size_t kMaxIndexedElements = 2'000'000;  // Of IndexCache::kElementBytes each, with their scene.
 constexpr std::chrono::milliseconds kFlush{100};
 constexpr double kMaxCachedResultBytes = 256e6;  // Of those that are on disk too.
+const std::vector<std::string> kServices = {v1::RenderService::service_full_name(),
+                                            v1::SceneService::service_full_name(),
+                                            v1::ServerService::service_full_name()};
+constexpr char kAuditLog[] = "/audit.jsonl";  // In the data folder.
 constexpr char kStorageHealth[] = "flatlight.storage";
 constexpr int kQuickThreads = 4;
 constexpr int kSlowThreads = 2;
@@ -55,8 +63,9 @@ std::uint64_t RandomEpoch() {
   return (epoch >> 11) | 1;
 }
 
-SchedulerOptions MakeSchedulerOptions(const ServerOptions& options) {
+SchedulerOptions MakeSchedulerOptions(const ServerOptions& options, Metrics& metrics) {
   SchedulerOptions scheduler;
+  scheduler.events = &metrics;
   scheduler.runners = 2;
   scheduler.starters = 2;
   scheduler.max_running_jobs = options.limits.max_running_jobs;
@@ -65,12 +74,31 @@ SchedulerOptions MakeSchedulerOptions(const ServerOptions& options) {
   return scheduler;
 }
 
+struct Logs {
+  std::unique_ptr<JsonLog> calls;  // Null, as below: not written.
+  std::unique_ptr<JsonLog> audit;
+
+  absl::Status Open(const ServerOptions& options) {
+    if (!options.log.empty()) {
+      auto opened = JsonLog::Open(options.log);
+      if (!opened.ok()) return opened.status();
+      calls = *std::move(opened);
+    }
+    if (options.data.empty()) return absl::OkStatus();
+    auto opened = JsonLog::Open(options.data + kAuditLog);
+    if (!opened.ok()) return opened.status();
+    audit = *std::move(opened);
+    return absl::OkStatus();
+  }
+};
+
 }  // namespace
 
 // In the order in which they need each other; destroyed in reverse.
 struct Server::Parts {
-  Parts(const ServerOptions& options, std::unique_ptr<Storage> opened)
-      : pool(options.threads),
+  Parts(const ServerOptions& options, std::unique_ptr<Storage> opened, Logs opened_logs)
+      : logs(std::move(opened_logs)),
+        pool(options.threads),
         storage(std::move(opened)),
         archive(storage == nullptr ? nullptr : std::make_unique<JobArchive>(*storage, BuildVersion())),
         format(BuildVersion()),
@@ -79,7 +107,7 @@ struct Server::Parts {
         scene_store(MakeSceneStore(options)),
         scenes(*scene_store),
         hub({.epoch = RandomEpoch(), .max_watches = options.limits.max_watches, .heartbeat = options.heartbeat}, jobs),
-        scheduler(MakeSchedulerOptions(options), jobs, pool, clock, StartOf(options),
+        scheduler(MakeSchedulerOptions(options, metrics), jobs, pool, clock, StartOf(options),
                   [this](const JobId& job) { hub.JobChanged(job); }),
         quick(kQuickThreads, kMaxWaitingQuickBytes),
         slow(kSlowThreads, kMaxWaitingSlowBytes),
@@ -92,10 +120,30 @@ struct Server::Parts {
                 .built_scenes = built_scenes,
                 .scheduler = scheduler,
                 .quick = quick,
-                .slow = slow},
+                .slow = slow,
+                .telemetry = telemetry},
         render_service(backend, hub),
         scene_service(backend),
-        server_service(backend) {}
+        server_service(backend) {
+    metrics.ReadWith([this] { return Read(); });
+  }
+
+  Readings Read() {
+    Readings now;
+    now.jobs = scheduler.Load().Total();
+    now.watches = static_cast<double>(hub.size());
+    const auto& counts = hub.counts();
+    now.resumed_watches = static_cast<double>(counts.resumed);
+    now.new_watches = static_cast<double>(counts.added) - now.resumed_watches;
+    now.updates = static_cast<double>(counts.updates);
+    now.conflated = static_cast<double>(counts.conflated);
+    for (const JsonLog* log : {logs.calls.get(), logs.audit.get()}) {
+      if (log != nullptr) now.lost_log_lines += static_cast<double>(log->lost_lines());
+    }
+    const std::lock_guard lock(health_mutex);
+    now.storage_healthy = storage_healthy;
+    return now;
+  }
 
   std::unique_ptr<JobStore> MakeJobStore(const ServerOptions& options) {
     const std::size_t most = options.limits.max_jobs;
@@ -132,6 +180,17 @@ struct Server::Parts {
     return absl::OkStatus();
   }
 
+  absl::Status ServeMetrics(const std::string& where) {
+    if (where.empty()) return absl::OkStatus();
+    const auto parsed = ParseListenAddress(where);
+    if (!parsed.ok()) return parsed.status();
+    if (parsed->host.empty()) return absl::InvalidArgumentError("metrics are served at HOST:PORT, not at " + where);
+    auto served = metrics.Expose(parsed->host, parsed->port);
+    if (!served.ok()) return served.status();
+    metrics_address = *std::move(served);
+    return absl::OkStatus();
+  }
+
   void TellStorageHealth(const absl::Status& health) {
     if (!health.ok()) std::fprintf(stderr, "flatlightd: %s\n", std::string(health.message()).c_str());
     const std::lock_guard lock(health_mutex);
@@ -147,6 +206,9 @@ struct Server::Parts {
   }
 
   SteadyClock clock;
+  Metrics metrics{BuildVersion()};
+  Logs logs;
+  CallTelemetry telemetry{metrics, logs.calls.get(), logs.audit.get(), kServices};
   IndexCache indexes{kMaxIndexedElements};
   ThreadPool pool;
   std::unique_ptr<Storage> storage;  // Null, as are the archive and `durable`: nothing outlives the process.
@@ -171,6 +233,7 @@ struct Server::Parts {
   bool storage_healthy = true;
   std::unique_ptr<grpc::Server> grpc;
   std::string address;
+  std::string metrics_address;
 };
 
 Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -178,6 +241,18 @@ Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Server::~Server() { Drain(std::chrono::milliseconds(0)); }
 
 const std::string& Server::address() const { return parts_->address; }
+
+const std::string& Server::metrics_address() const { return parts_->metrics_address; }
+
+std::string Server::MetricsText() const { return parts_->metrics.Text(); }
+
+absl::Status Server::ReopenLogs() {
+  for (JsonLog* log : {parts_->logs.calls.get(), parts_->logs.audit.get()}) {
+    if (log == nullptr) continue;
+    if (absl::Status opened = log->Reopen(); !opened.ok()) return opened;
+  }
+  return absl::OkStatus();
+}
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
   const auto address = ParseListenAddress(options.address);
@@ -194,8 +269,11 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
     if (!opened.ok()) return opened.status();
     storage = *std::move(opened);
   }
-  auto parts = std::make_unique<Parts>(options, std::move(storage));
+  Logs logs;
+  if (absl::Status opened = logs.Open(options); !opened.ok()) return opened;
+  auto parts = std::make_unique<Parts>(options, std::move(storage), std::move(logs));
   if (absl::Status restored = parts->Restore(); !restored.ok()) return restored;
+  if (absl::Status served = parts->ServeMetrics(options.metrics_address); !served.ok()) return served;
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
@@ -206,6 +284,9 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.SetMaxReceiveMessageSize(static_cast<int>(options.limits.max_message_bytes));
+  std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
+  interceptors.push_back(parts->telemetry.MakeFactory());
+  builder.experimental().SetInterceptorCreators(std::move(interceptors));
   builder.RegisterService(&parts->render_service);
   builder.RegisterService(&parts->scene_service);
   builder.RegisterService(&parts->server_service);
@@ -221,8 +302,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
     return cannot_listen(why.empty() ? "another program listened there until just now" : why);
   }
   parts->address = address->ToString(port);
-  for (const char* service : {v1::RenderService::service_full_name(), v1::SceneService::service_full_name(),
-                              v1::ServerService::service_full_name()}) {
+  for (const std::string& service : kServices) {
     parts->grpc->GetHealthCheckService()->SetServingStatus(service, true);
   }
   return std::unique_ptr<Server>(new Server(std::move(parts)));
@@ -240,6 +320,7 @@ void Server::Drain(std::chrono::milliseconds grace) {
   // Answers are on their way; what remains is to write them, and idle connections.
   parts.grpc->Shutdown(std::chrono::system_clock::now() + std::min(grace, kFlush));
   parts.grpc->Wait();
+  parts.metrics.Close();
   const std::lock_guard lock(parts.health_mutex);
   parts.grpc.reset();
 }

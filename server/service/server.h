@@ -19,6 +19,8 @@ struct ServerOptions {
   int threads = 1;                      // For rendering.
   std::string data;                     // A folder for what is to outlive the process; empty: nothing does.
   Limits limits;
+  std::string metrics_address;  // A loopback address and port for Prometheus; empty: none is served.
+  std::string log;              // A file for a line about each call, or "-"; empty: none.
   std::chrono::milliseconds checkpoint_interval{3000};  // Of a job, at least. With `data`.
   std::chrono::milliseconds heartbeat{10'000};          // Between messages of a watch on which nothing happens.
   Scheduler::Start start_rendering;  // Tests give their own; else StartRendering, on indexes that jobs share.
@@ -34,6 +36,12 @@ class Server {
 
   // Where it can be reached: the address with the port it has.
   const std::string& address() const;
+  // Where its metrics are served; empty if they are not.
+  const std::string& metrics_address() const;
+  // What a Prometheus server would read.
+  std::string MetricsText() const;
+  // Opens logs anew that were moved away. An error names the one that could not be.
+  absl::Status ReopenLogs();
   // Ends: health says NOT_SERVING, new jobs are refused, watchers are told; jobs are written down as far as they are,
   // or, without a folder, cancelled; calls under way get `grace` to end. Returns when all has ended.
   void Drain(std::chrono::milliseconds grace);

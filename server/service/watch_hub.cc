@@ -30,6 +30,7 @@ absl::Status WatchHub::Add(const JobId& job, const std::shared_ptr<Watcher>& wat
         std::chrono::seconds(2));
   }
   ++count_;
+  ++counts_.added;
   watched_[job].watchers.insert(watcher);
   soon_.push_back(watcher);
   wake_.notify_one();
@@ -54,6 +55,11 @@ void WatchHub::Drain(std::chrono::milliseconds grace) {
 bool WatchHub::draining() const {
   const std::lock_guard lock(mutex_);
   return draining_;
+}
+
+std::size_t WatchHub::size() const {
+  const std::lock_guard lock(mutex_);
+  return count_;
 }
 
 std::shared_ptr<WatchUpdate> WatchHub::UpdateFor(const JobRecord& job, WatchUpdate::Known known) {

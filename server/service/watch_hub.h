@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_SERVER_SERVICE_WATCH_HUB_H_
 #define FLATLIGHT_SERVER_SERVICE_WATCH_HUB_H_
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -37,6 +38,14 @@ class WatchHub {
     std::chrono::milliseconds stall{30'000};
   };
 
+  // Since the start.
+  struct Counts {
+    std::atomic<std::uint64_t> added = 0;
+    std::atomic<std::uint64_t> resumed = 0;    // Of those: with a known state.
+    std::atomic<std::uint64_t> updates = 0;    // Complete states sent.
+    std::atomic<std::uint64_t> conflated = 0;  // States between those.
+  };
+
   WatchHub(const Options& options, JobStore& jobs);
   // All watchers must be gone.
   ~WatchHub();
@@ -52,6 +61,9 @@ class WatchHub {
 
   // For watchers.
   bool draining() const;
+  // Watches that are open.
+  std::size_t size() const;
+  Counts& counts() { return counts_; }
   std::shared_ptr<WatchUpdate> UpdateFor(const JobRecord& job, WatchUpdate::Known known);
   void StepSoon(const std::shared_ptr<Watcher>& watcher);
   void StepAt(const std::shared_ptr<Watcher>& watcher, Time time);
@@ -70,6 +82,7 @@ class WatchHub {
 
   const Options options_;
   JobStore& jobs_;
+  Counts counts_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::condition_variable left_;

@@ -90,7 +90,10 @@ void Watcher::OnWriteDone(bool ok) {
     bytes_.Clear();
     if (!ok) broken_ = true;
     if (was_update && ++next_message_ == update_->size()) {
-      known_ = update_->state().sequence;
+      ++hub_.counts().updates;
+      const std::uint64_t sequence = update_->state().sequence;
+      if (known_) hub_.counts().conflated += sequence - *known_ - 1;
+      known_ = sequence;
       update_.reset();
     }
   }

@@ -23,6 +23,7 @@ LAYERS = [
     ["server/convert"],
     ["server/gallery"],
     ["server/scheduler"],
+    ["server/telemetry"],
     ["server/service"],
     ["server/app"],
 ]
@@ -36,6 +37,7 @@ FORBIDDEN_INCLUDES = [
     ("server/gallery", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
     ("server/store", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
     ("server/scheduler", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
+    ("server/telemetry", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
 ]
 
 MAX_LINES = 499

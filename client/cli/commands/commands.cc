@@ -12,6 +12,7 @@ CommandResult RunCommand(const CommandLine& line, Interruption& interruption) {
       {"submit", Submit},
       {"watch", Watch},
       {"jobs", Jobs},
+      {"top", Top},
       {"show", Show},
       {"fetch", Fetch},
       {"cancel", Cancel},

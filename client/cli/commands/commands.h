@@ -30,6 +30,9 @@ CommandResult Cancel(const CommandLine& line, Interruption& interruption);
 CommandResult Pause(const CommandLine& line, Interruption& interruption);
 CommandResult Resume(const CommandLine& line, Interruption& interruption);
 
+// top_command.cc
+CommandResult Top(const CommandLine& line, Interruption& interruption);
+
 // scene_commands.cc
 CommandResult Scenes(const CommandLine& line, Interruption& interruption);
 CommandResult Explain(const CommandLine& line, Interruption& interruption);

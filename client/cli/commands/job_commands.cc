@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "client/cli/commands/commands.h"
 #include "client/cli/commands/console.h"
@@ -42,6 +44,27 @@ CommandResult Control(const CommandLine& line, Interruption& interruption,
   if (!job.ok()) return job.status();
   if (line.json) return Answer(ToJson(*job));
   return line.quiet ? ExitCode::kDone : Answer(job->name() + " " + OptionName(job->state()) + '\n');
+}
+
+double SecondsNow() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+// Deletes the jobs that ended longer ago, here and on the server.
+absl::Status Prune(Connection& connection, double seconds, std::vector<v1::Job>& jobs) {
+  const double now = SecondsNow();
+  std::vector<v1::Job> kept;
+  for (v1::Job& job : jobs) {
+    const double ended = static_cast<double>(job.end_time().seconds()) + 1e-9 * job.end_time().nanos();
+    if (!job.has_end_time() || now - ended < seconds) {
+      kept.push_back(std::move(job));
+      continue;
+    }
+    const absl::Status deleted = DeleteJob(connection, job.name());
+    if (!deleted.ok() && !absl::IsNotFound(deleted)) return deleted;
+  }
+  jobs = std::move(kept);
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -99,15 +122,18 @@ CommandResult Watch(const CommandLine& line, Interruption& interruption) {
 CommandResult Jobs(const CommandLine& line, Interruption& interruption) {
   const auto session = OpenServer(line, interruption);
   if (!session.ok()) return session.status();
-  const auto jobs = ListJobs((*session)->connection());
+  auto jobs = ListJobs((*session)->connection());
   if (!jobs.ok()) return jobs.status();
+  if (line.prune_seconds) {
+    absl::Status pruned = Prune((*session)->connection(), *line.prune_seconds, *jobs);
+    if (!pruned.ok()) return pruned;
+  }
   if (line.json) {
     v1::ListJobsResponse all;
     all.mutable_jobs()->Add(jobs->begin(), jobs->end());
     return Answer(ToJson(all));
   }
-  const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
-  return Answer(JobListText(*jobs, now.count()));
+  return Answer(JobListText(*jobs, SecondsNow()));
 }
 
 CommandResult Show(const CommandLine& line, Interruption& interruption) {

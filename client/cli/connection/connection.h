@@ -30,6 +30,7 @@ class Connection {
 
   v1::RenderService::Stub& render() { return *render_; }
   v1::SceneService::Stub& scenes() { return *scenes_; }
+  v1::ServerService::Stub& server() { return *server_; }
   const v1::GetCapabilitiesResponse& capabilities() const { return capabilities_; }
   const std::string& address() const { return address_.text; }
   Interruption& interruption() { return interruption_; }

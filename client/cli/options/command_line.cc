@@ -20,6 +20,7 @@ struct Raw {
   BenchTexts bench;
   std::optional<std::string> picture;
   std::optional<std::string> tolerance;
+  std::optional<std::string> prune;
   std::optional<std::string> server;
 };
 
@@ -188,6 +189,11 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   AddQuiet(watch, raw);
   CLI::App& jobs = AddCommand(app, "jobs", "list the jobs of a server");
   AddJson(jobs, raw, "the list");
+  jobs.add_option("--prune", raw.prune, "delete the jobs that ended longer than AGE ago: 0, 90m, 12h, 30d")
+      ->type_name("AGE");
+  CLI::App& top = AddCommand(app, "top", "show what a server does: jobs, users, rates", kTopHelp);
+  top.add_flag("--once", raw.line.once, "show it once, in plain text");
+  AddJson(top, raw, "the activity");
   CLI::App& show = AddCommand(app, "show", "show a job", kJobHelp);
   AddJob(show, raw);
   AddJson(show, raw, "the job");
@@ -205,7 +211,7 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
     AddQuiet(control, raw);
     AddServer(control, raw);
   }
-  for (CLI::App* command : {&watch, &jobs, &show, &fetch}) AddServer(*command, raw);
+  for (CLI::App* command : {&watch, &jobs, &top, &show, &fetch}) AddServer(*command, raw);
 }
 
 void AddCompare(CLI::App& app, Raw& raw) {
@@ -291,6 +297,11 @@ absl::StatusOr<CommandLine> Finish(const CLI::App& app, Raw& raw) {
   if (raw.server) {
     if (raw.server->empty()) return UsageError("--server: ''; must be HOST:PORT or unix:PATH");
     raw.line.server = *raw.server;
+  }
+  if (raw.prune) {
+    const auto age = ParseAge("--prune", *raw.prune);
+    if (!age.ok()) return age.status();
+    raw.line.prune_seconds = *age;
   }
   if (raw.tolerance) {
     const auto tolerance =

@@ -21,10 +21,12 @@ struct CommandLine {
   std::string server;   // Of --server; empty if not given.
   bool json = false;
   bool quiet = false;
-  std::string scene;     // SCENE as written; of `scenes`, the name of one, or empty.
-  std::string job;       // JOB as written.
-  bool records = false;  // Of `watch`: print them as they are made.
-  std::string figure;    // Of `figure`: its name.
+  std::string scene;                    // SCENE as written; of `scenes`, the name of one, or empty.
+  std::string job;                      // JOB as written.
+  bool records = false;                 // Of `watch`: print them as they are made.
+  bool once = false;                    // Of `top`.
+  std::optional<double> prune_seconds;  // Of `jobs`: delete those that ended longer ago.
+  std::string figure;                   // Of `figure`: its name.
   v1::Settings settings;
   v1::JobClass job_class = v1::INTERACTIVE;  // Of `submit`.
   std::string known_records;                 // Of --records: a result file or jobs/UUID; empty if not given.

@@ -53,6 +53,9 @@ JOB is jobs/UUID, a UUID, or the beginning of one.)";
 
 inline constexpr char kJobHelp[] = R"(JOB is jobs/UUID, a UUID, or the beginning of one.)";
 
+inline constexpr char kTopHelp[] =
+    R"(On a terminal it stays, and shows the state of every second; Ctrl-C ends it. Elsewhere it shows one state.)";
+
 inline constexpr char kFetchHelp[] =
     R"(JOB is jobs/UUID, a UUID, or the beginning of one. It must have ended; of a cancelled one there is what was done.
 See `flatlight render --help` for the forms of OUT.)";

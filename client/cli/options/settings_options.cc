@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "client/cli/formats/enum_names.h"
 #include "client/cli/status/exit_code.h"
@@ -80,6 +81,18 @@ absl::StatusOr<double> ParseNumber(const std::string& option, const std::string&
   const std::string low = zero == Zero::kAllowed ? " from 0" : " above 0";
   const bool bounded = high < std::numeric_limits<double>::max();
   return Refuse(option, text, "a number" + low + (bounded ? ", at most " + FormatValue(high) : ""));
+}
+
+absl::StatusOr<double> ParseAge(const std::string& option, const std::string& text) {
+  constexpr double kMost = 1e9;  // s: 30 years.
+  constexpr std::pair<char, double> kUnits[] = {{'s', 1}, {'m', 60}, {'h', 3600}, {'d', 86400}};
+  double number = 0;
+  if (text == "0") return 0;
+  for (const auto& [unit, seconds] : kUnits) {
+    if (text.empty() || text.back() != unit || !ParseWhole(text.substr(0, text.size() - 1), number)) continue;
+    if (number >= 0 && number * seconds <= kMost) return number * seconds;
+  }
+  return Refuse(option, text, "0, or a number with its unit: 30s, 90m, 12h, 30d");
 }
 
 absl::StatusOr<v1::Probe> ParsePicture(const std::string& text) {

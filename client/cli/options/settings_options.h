@@ -28,6 +28,9 @@ absl::StatusOr<v1::Settings> ParseSettings(const SettingsOptions& options);
 // "WIDTHxHEIGHT": a picture of the whole scene of so many pixels.
 absl::StatusOr<v1::Probe> ParsePicture(const std::string& text);
 
+// An age in s, from 0, 30s, 90m, 12h or 30d.
+absl::StatusOr<double> ParseAge(const std::string& option, const std::string& text);
+
 // A number in (0, `high`], or from 0 if `zero` is allowed.
 enum class Zero { kAllowed, kRefused };
 absl::StatusOr<double> ParseNumber(const std::string& option, const std::string& text, Zero zero, double high);

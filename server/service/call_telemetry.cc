@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/call_telemetry.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <string_view>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "google/protobuf/descriptor.h"
+#include "google/rpc/error_info.pb.h"
+#include "google/rpc/status.pb.h"
+#include "server/store/random_bytes.h"
+
+namespace flatlight {
+namespace {
+
+using grpc::experimental::InterceptionHookPoints;
+using grpc::experimental::InterceptorBatchMethods;
+
+constexpr char kRequestId[] = "x-request-id";
+constexpr std::size_t kMaxRequestIdBytes = 128;
+constexpr std::string_view kPackage = "/flatlight.v1.";
+constexpr char kOtherMethods[] = "other";  // Health, reflection, and names that strangers think of.
+
+bool IsRequestId(const grpc::string_ref& text) {
+  return text.size() > 0 && text.size() <= kMaxRequestIdBytes &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c <= '~' && c != '"' && c != '\\'; });
+}
+
+std::string HexPrefix() {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (const unsigned char byte : RandomBytes<4>()) {
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
+  }
+  return text + "-";
+}
+
+std::string ReasonOf(const grpc::Status& status) {
+  if (status.ok()) return "";
+  google::rpc::Status details;
+  if (details.ParseFromString(status.error_details())) {
+    for (const auto& detail : details.details()) {
+      google::rpc::ErrorInfo info;
+      if (detail.UnpackTo(&info)) return info.reason();
+    }
+  }
+  return absl::StatusCodeToString(static_cast<absl::StatusCode>(status.error_code()));
+}
+
+// Get, List, Watch, Explain, Validate: what only looks.
+bool OnlyLooks(std::string_view method) {
+  const std::string_view name = method.substr(method.rfind('/') + 1);
+  constexpr std::array<std::string_view, 5> kLooks = {"Get", "List", "Watch", "Explain", "Validate"};
+  return std::any_of(kLooks.begin(), kLooks.end(), [&](std::string_view verb) { return name.starts_with(verb); });
+}
+
+bool IsDenied(const grpc::Status& status) {
+  return status.error_code() == grpc::StatusCode::UNAUTHENTICATED ||
+         status.error_code() == grpc::StatusCode::PERMISSION_DENIED;
+}
+
+class CallInterceptor final : public grpc::experimental::Interceptor {
+ public:
+  CallInterceptor(CallTelemetry& telemetry, grpc::experimental::ServerRpcInfo& info)
+      : telemetry_(telemetry), info_(info), start_(std::chrono::steady_clock::now()) {
+    call_.method = info.method();
+  }
+
+  void Intercept(InterceptorBatchMethods* methods) override {
+    if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::POST_RECV_INITIAL_METADATA)) {
+      const auto* metadata = methods->GetRecvInitialMetadata();
+      const auto given = metadata == nullptr ? std::multimap<grpc::string_ref, grpc::string_ref>::const_iterator()
+                                             : metadata->find(kRequestId);
+      if (metadata != nullptr && given != metadata->end() && IsRequestId(given->second)) {
+        call_.request_id.assign(given->second.data(), given->second.size());
+      }
+    }
+    if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_INITIAL_METADATA)) {
+      if (auto* metadata = methods->GetSendInitialMetadata(); metadata != nullptr) {
+        metadata->emplace(kRequestId, RequestId());
+      }
+    }
+    if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_MESSAGE)) {
+      if (auto* bytes = methods->GetSerializedSendMessage(); bytes != nullptr) {
+        call_.sent_bytes += bytes->Length();
+      }
+    }
+    if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS)) End(methods->GetSendStatus());
+    methods->Proceed();
+  }
+
+ private:
+  const std::string& RequestId() {
+    if (call_.request_id.empty()) call_.request_id = telemetry_.NextRequestId();
+    return call_.request_id;
+  }
+
+  void End(grpc::Status status) {
+    call_.status = std::move(status);
+    call_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    RequestId();
+    if (telemetry_.logs()) call_.peer = info_.server_context()->peer();
+    telemetry_.Ended(info_.server_context(), call_);
+  }
+
+  CallTelemetry& telemetry_;
+  grpc::experimental::ServerRpcInfo& info_;
+  const std::chrono::steady_clock::time_point start_;
+  CallTelemetry::Call call_;
+};
+
+class Factory final : public grpc::experimental::ServerInterceptorFactoryInterface {
+ public:
+  explicit Factory(CallTelemetry& telemetry) : telemetry_(telemetry) {}
+  grpc::experimental::Interceptor* CreateServerInterceptor(grpc::experimental::ServerRpcInfo* info) override {
+    return new CallInterceptor(telemetry_, *info);
+  }
+
+ private:
+  CallTelemetry& telemetry_;
+};
+
+}  // namespace
+
+CallTelemetry::CallTelemetry(Metrics& metrics, JsonLog* calls, JsonLog* audit, const std::vector<std::string>& services)
+    : metrics_(metrics), calls_(calls), audit_(audit), id_prefix_(HexPrefix()) {
+  for (const std::string& name : services) {
+    const auto* service = google::protobuf::DescriptorPool::generated_pool()->FindServiceByName(name);
+    for (int i = 0; i < service->method_count(); ++i) {
+      methods_.insert("/" + service->full_name() + "/" + service->method(i)->name());
+    }
+  }
+}
+
+CallTelemetry::Shard& CallTelemetry::ShardOf(const grpc::ServerContextBase* context) {
+  return shards_[(reinterpret_cast<std::uintptr_t>(context) >> 6) % shards_.size()];
+}
+
+void CallTelemetry::NoteCaller(const grpc::ServerContextBase& context, const std::string& caller) {
+  if (!logs()) return;
+  Shard& shard = ShardOf(&context);
+  const std::lock_guard lock(shard.mutex);
+  shard.notes[&context].caller = caller;
+}
+
+void CallTelemetry::NoteResource(const grpc::ServerContextBase& context, const std::string& name) {
+  if (!logs()) return;
+  Shard& shard = ShardOf(&context);
+  const std::lock_guard lock(shard.mutex);
+  shard.notes[&context].resource = name;
+}
+
+std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> CallTelemetry::MakeFactory() {
+  return std::make_unique<Factory>(*this);
+}
+
+std::string CallTelemetry::NextRequestId() { return id_prefix_ + std::to_string(++next_id_); }
+
+void CallTelemetry::Ended(const grpc::ServerContextBase* context, const Call& call) {
+  const std::string code = absl::StatusCodeToString(static_cast<absl::StatusCode>(call.status.error_code()));
+  const std::string reason = ReasonOf(call.status);
+  const bool ours = methods_.count(call.method) > 0;
+  const std::string method = ours ? call.method.substr(kPackage.size()) : kOtherMethods;
+  metrics_.CallEnded(method, code, ours ? reason : "", call.seconds, static_cast<double>(call.sent_bytes));
+  if (!logs()) return;
+  Notes notes;
+  {
+    Shard& shard = ShardOf(context);
+    const std::lock_guard lock(shard.mutex);
+    if (auto node = shard.notes.extract(context)) notes = std::move(node.mapped());
+  }
+  if (!ours) return;
+  JsonLog::Line line;
+  line["request"] = call.request_id;
+  line["caller"] = notes.caller;
+  line["method"] = method;
+  if (!notes.resource.empty()) line["resource"] = notes.resource;
+  line["code"] = code;
+  if (!reason.empty()) line["reason"] = reason;
+  line["peer"] = call.peer;
+  const bool changes = !OnlyLooks(call.method) && (!notes.resource.empty() || !call.status.ok());
+  if (audit_ != nullptr && (changes || IsDenied(call.status))) audit_->Write(line);
+  line["seconds"] = call.seconds;
+  line["sent_bytes"] = call.sent_bytes;
+  if (calls_ != nullptr) calls_->Write(line);
+}
+
+}  // namespace flatlight

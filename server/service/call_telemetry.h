@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef FLATLIGHT_SERVER_SERVICE_CALL_TELEMETRY_H_
+#define FLATLIGHT_SERVER_SERVICE_CALL_TELEMETRY_H_
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "grpcpp/server_context.h"
+#include "grpcpp/support/server_interceptor.h"
+#include "server/telemetry/json_log.h"
+#include "server/telemetry/metrics.h"
+
+namespace flatlight {
+
+// Sees every call from its arrival to its answer: counts it, gives it an id (the caller's "x-request-id", or one of its
+// own, sent back under that name), and writes it to the logs. The call log has each call of a flatlight service; the
+// audit log those that change something, and those that were not allowed.
+class CallTelemetry {
+ public:
+  // The logs may be null. What is passed in must outlive the calls.
+  CallTelemetry(Metrics& metrics, JsonLog* calls, JsonLog* audit, const std::vector<std::string>& services);
+
+  // Who calls, and which job or scene it is about. While the call has no answer.
+  void NoteCaller(const grpc::ServerContextBase& context, const std::string& caller);
+  void NoteResource(const grpc::ServerContextBase& context, const std::string& name);
+
+  // For the server's builder; outlived by this.
+  std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> MakeFactory();
+
+  struct Call {
+    std::string method;  // "/flatlight.v1.RenderService/CreateJob".
+    std::string request_id;
+    std::string peer;
+    double seconds = 0;
+    std::uint64_t sent_bytes = 0;
+    grpc::Status status;
+  };
+  std::string NextRequestId();
+  const Metrics& metrics() const { return metrics_; }
+  double uptime_seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  bool logs() const { return calls_ != nullptr || audit_ != nullptr; }
+  void Ended(const grpc::ServerContextBase* context, const Call& call);
+
+ private:
+  struct Notes {
+    std::string caller;
+    std::string resource;
+  };
+  struct Shard {
+    std::mutex mutex;
+    std::unordered_map<const grpc::ServerContextBase*, Notes> notes ABSL_GUARDED_BY(mutex);
+  };
+
+  Shard& ShardOf(const grpc::ServerContextBase* context);
+
+  Metrics& metrics_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  JsonLog* const calls_;
+  JsonLog* const audit_;
+  std::unordered_set<std::string> methods_;  // Of the services.
+  const std::string id_prefix_;
+  std::atomic<std::uint64_t> next_id_ = 0;
+  std::array<Shard, 16> shards_;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SERVICE_CALL_TELEMETRY_H_
