@@ -28,6 +28,8 @@ constexpr int kMostIdleRounds = 3;
 constexpr double kFarthest = 1e6;
 // Of what errors are relative to, and of the probe's mean.
 constexpr double kFloor = 0.01;
+// Of the mean of the brightest probe: what is less is all but dark.
+constexpr double kDark = 1e-3;
 constexpr std::size_t kPiecesPerThread = 4;
 // To which equations are solved: of the target error; after a round that brought little; and at least.
 constexpr double kTolerance = 1e-3;
@@ -73,6 +75,7 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
   direct_.resize(points_.size());
   relative_before_.resize(points_.size());
   idle_rounds_.resize(points_.size());
+  dark_.resize(points_.size());
   const Scene& world = caster_->scene();
   // Direct light alone needs no panels.
   if (options_.max_bounces == 0u) {
@@ -251,7 +254,7 @@ void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
   }
   coming_[point] = value;
   // What comes no nearer to the target has no say in what to split.
-  if (idle_rounds_[point] == kMostIdleRounds) return;
+  if (idle_rounds_[point] == kMostIdleRounds || (dark_waits_ && dark_[point] != 0)) return;
   for (const auto& [panel, share] : worker.reception.shares()) {
     double& most = worker.shares[panel];
     most = std::max(most, Relative(share, options_.target_error * size));
@@ -273,13 +276,17 @@ void ReferenceSolver::EndPoints() {
     Spectrum& mean = means[probe_of_point_[i]];
     mean = mean + (1 / points_of_probe_[probe_of_point_[i]]) * coming_[i].irradiance;
   }
+  double brightest = 0;
+  for (const Spectrum& mean : means) brightest = std::max({brightest, mean[0], mean[1], mean[2]});
   relative_error_ = 0;
-  double to_improve = 0;  // The largest of points that still improve.
+  double to_improve = 0, of_dark = 0;  // The largest of points that still improve.
   for (std::size_t i = 0; i < points_.size(); ++i) {
     double relative = 0;
+    dark_[i] = 1;
     for (int c = 0; c < options_.channels; ++c) {
       const double size = std::max(coming_[i].irradiance[c], kFloor * means[probe_of_point_[i]][c]);
       relative = std::max(relative, Relative(coming_[i].irradiance_error[c], size));
+      if (size > kDark * kFloor * brightest) dark_[i] = 0;
     }
     relative_error_ = std::max(relative_error_, relative);
     if (rounds_ > 0 && relative > options_.target_error) {
@@ -291,8 +298,11 @@ void ReferenceSolver::EndPoints() {
       }
     }
     relative_before_[i] = relative;
-    if (idle_rounds_[i] < kMostIdleRounds) to_improve = std::max(to_improve, relative);
+    double& most = dark_[i] != 0 ? of_dark : to_improve;
+    if (idle_rounds_[i] < kMostIdleRounds) most = std::max(most, relative);
   }
+  dark_waits_ = to_improve > options_.target_error;
+  if (!dark_waits_) to_improve = std::max(to_improve, of_dark);
   means_ = std::move(means);
   values_.swap(coming_);
   if (rounds_++ == 0) first_relative_error_ = relative_error_;

@@ -112,6 +112,9 @@ class ReferenceSolver {
   // By point: the error after the round before in units of what it is relative to, and how many rounds brought little.
   std::vector<double> relative_before_;
   std::vector<int> idle_rounds_;
+  // By point, of channels: it is all but dark. Such points have a say in what to split when all others are done.
+  std::vector<char> dark_;
+  bool dark_waits_ = false;
   double to_improve_ = 0;  // The largest of points that still improved.
 
   std::mutex mutex_;
