@@ -41,6 +41,7 @@ constexpr std::size_t kMaxWaitingQuickBytes = 64u << 20;
 constexpr std::size_t kMaxWaitingSlowBytes = 256u << 20;
 constexpr std::size_t kMaxBuiltSceneBytes = 1u << 30;
 constexpr std::size_t kMaxIndexedElements = 2'000'000;  // Of IndexCache::kElementBytes each, with their scene.
+constexpr std::size_t kMaxSolvedBytes = 256u << 20;     // Of what `reference` found.
 constexpr std::chrono::milliseconds kFlush{100};
 constexpr double kMaxCachedResultBytes = 256e6;  // Of those that are on disk too.
 constexpr char kStorageHealth[] = "flatlight.storage";
@@ -147,7 +148,7 @@ struct Server::Parts {
   }
 
   SteadyClock clock;
-  IndexCache indexes{kMaxIndexedElements};
+  IndexCache indexes{kMaxIndexedElements, kMaxSolvedBytes};
   ThreadPool pool;
   std::unique_ptr<Storage> storage;  // Null, as are the archive and `durable`: nothing outlives the process.
   std::unique_ptr<JobArchive> archive;

@@ -85,6 +85,11 @@ std::size_t Radiosity::memory() const {
          high_entries * (kResidualCoefficients - kNodes + (positive_.empty() ? 0 : kNodes)) * sizeof(float);
 }
 
+void Radiosity::DropRows() {
+  rows_ = {};
+  positive_ = {};
+}
+
 double Radiosity::HalfReflectance(std::size_t panel, std::size_t channel) const {
   return 0.5 * scene_.curve_of(mesh_.panels()[panel].element).reflectance.value[channel];
 }

@@ -50,8 +50,11 @@ class Radiosity {
             Radiosity* before = nullptr);
 
   const PanelMesh& mesh() const { return mesh_; }
-  // In bytes, of the rows built so far.
+  // In bytes, of the rows built so far; and of the rest, per panel and about.
   std::size_t memory() const;
+  static constexpr std::size_t kPanelBytes = 3000;
+  // Frees the rows: what follows from the light and its errors stays, finer meshes have rows of their own.
+  void DropRows();
 
   void BuildRows(RowBuilder& builder, std::size_t panel);
   bool Solve(const Loop& loop);
