@@ -42,12 +42,13 @@ Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const Pa
                        const LightErrors* errors, int derivatives) {
   Received sum;
   shares_.clear();
-  for (ErrorSum& of_residuals : of_residuals_) of_residuals = {};
+  for (auto& of_derivative : of_residuals_)
+    for (ErrorSum& of_residuals : of_derivative) of_residuals = {};
   end_errors_ = EndErrors(scene_);
   for (const VisiblePiece& piece : outlook_.From(receiver))
     AddPiece(receiver, mesh, light, errors, derivatives, piece, sum);
   for (std::size_t c = 0; c < light.channels(); ++c) {
-    sum.error[0].value[c] += of_residuals_[c].total();
+    for (int m = 0; m <= derivatives; ++m) sum.error[m].value[c] += of_residuals_[m][c].total();
     sum.rounding[0].value[c] += end_errors_.joints();
   }
   return sum;
@@ -104,10 +105,9 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
       const double own = std::max(errors->missed[i * channels + c], errors->root_mean_square[i * channels + c]);
       for (int m = 0; m <= derivatives; ++m) {
         // Derivatives see more of what is not smooth.
-        const double known = m == 0 ? 0 : 2 * std::abs(off[m].value[c]) + 6 * absolute[m] * own;
-        sum.error[m].value[c] += known + absolute[m] * other;
+        of_residuals_[m][c].Add((m == 0 ? 1 : 2) * off[m].value[c], m == 0 ? missed : 6 * absolute[m] * own);
+        sum.error[m].value[c] += absolute[m] * other;
       }
-      of_residuals_[c].Add(off[0].value[c], missed);
       share = std::max(share, std::abs(off[0].value[c]) + missed);
     }
     shares_.emplace_back(i, share);

@@ -69,7 +69,7 @@ class Reception {
   PointCount count_;
   Outlook outlook_;
   std::vector<std::pair<std::size_t, double>> shares_;
-  ErrorSum of_residuals_[kMaxChannels];  // In irradiance.
+  ErrorSum of_residuals_[3][kMaxChannels];  // By derivative.
   EndErrors end_errors_;
 };
 
