@@ -66,7 +66,7 @@ TEST(ReferenceBoundsTest, NoErrorIsLargerThanItsBound) {
   EXPECT_EQ(gradient.beyond, 0);
   EXPECT_EQ(hessian.beyond, 0);
   EXPECT_GT(irradiance.cautions.size(), 300u);
-  EXPECT_LT(irradiance.MedianCaution(), 30);
+  EXPECT_LT(irradiance.MedianCaution(), 16);
   EXPECT_LT(gradient.MedianCaution(), 100);
   EXPECT_LT(hessian.MedianCaution(), 300);
 }
