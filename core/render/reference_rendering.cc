@@ -21,8 +21,10 @@ constexpr double kFirstRound = 0.05;
 }  // namespace
 
 ReferenceRendering::ReferenceRendering(std::shared_ptr<const Scene> scene,
-                                       const std::shared_ptr<const RayCaster>& caster, const Plan& plan)
+                                       const std::shared_ptr<const RayCaster>& caster, const Plan& plan,
+                                       std::shared_ptr<SolvedWorlds> worlds)
     : scene_(std::move(scene)),
+      worlds_(std::move(worlds)),
       derivatives_(static_cast<int>(plan.settings.derivatives.value_or(Derivatives::kNone))),
       target_error_(*plan.settings.target_error),
       time_limit_(plan.settings.time_limit),
@@ -36,7 +38,8 @@ ReferenceRendering::ReferenceRendering(std::shared_ptr<const Scene> scene,
   options.channels = plan.Takes(skip::kColour) ? 1 : kMaxChannels;
   options.max_bounces = plan.settings.max_bounces;
   options.target_error = target_error_;
-  solver_.emplace(scene_, caster, options);
+  auto world = worlds_->Take(*scene_, static_cast<std::size_t>(options.channels), options.max_bounces);
+  solver_.emplace(scene_, caster, options, std::move(world));
 }
 
 void ReferenceRendering::Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
@@ -54,6 +57,7 @@ void ReferenceRendering::Advance(Executor& executor, const Cancellation& cancell
   solver_->Advance(executor, threads, cancellation, clock, budget);
   if (solver_->state() == ReferenceSolver::State::kReached) {
     end_reason_ = EndReason::kTargetReached;
+    worlds_->Keep(solver_->TakeWorld());
   } else if (solver_->state() == ReferenceSolver::State::kExhausted) {
     end_reason_ = EndReason::kAccuracyLimit;
   } else if (time_limit_ && solver_->rounds() > 0 && Seconds(clock.Now() - *start_).count() >= *time_limit_) {

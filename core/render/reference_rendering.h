@@ -8,15 +8,18 @@
 #include "core/plane/ray_caster.h"
 #include "core/plane/reference/reference_solver.h"
 #include "core/render/rendering.h"
+#include "core/render/solved_worlds.h"
 
 namespace flatlight {
 
-// Light of all bounces with bounds on its error, round after round. The field has the values of the last round.
+// Light of all bounces with bounds on its error, round after round. The field has the values of the last round. Goes on
+// from what is known of the world, and keeps what it finds, so that values may differ within their bounds by what was
+// rendered before; the same job twice has the same bits.
 class ReferenceRendering final : public Rendering {
  public:
   // The caster's scene has the world of `scene`; it may be null where nothing emits.
   ReferenceRendering(std::shared_ptr<const Scene> scene, const std::shared_ptr<const RayCaster>& caster,
-                     const Plan& plan);
+                     const Plan& plan, std::shared_ptr<SolvedWorlds> worlds);
 
   void Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
                Clock::Duration budget) override;
@@ -27,6 +30,7 @@ class ReferenceRendering final : public Rendering {
 
  private:
   std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<SolvedWorlds> worlds_;
   int derivatives_;
   double target_error_;
   std::optional<double> time_limit_;  // s

@@ -38,7 +38,7 @@ std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, co
     return std::make_unique<IrradianceCachingRendering>(std::move(scene), std::move(caster), plan);
   }
   if (plan.settings.method == Method::kReference) {
-    return std::make_unique<ReferenceRendering>(std::move(scene), caster, plan);
+    return std::make_unique<ReferenceRendering>(std::move(scene), caster, plan, indexes.solved_worlds());
   }
   const SceneTraits& traits = scene->traits();
   if (traits.pixels == 0) return std::make_unique<PathTracingRendering>(std::move(scene), std::move(caster), plan);

@@ -45,6 +45,7 @@ constexpr std::size_t kMaxWaitingQuickBytes = 64u << 20;
 constexpr std::size_t kMaxWaitingSlowBytes = 256u << 20;
 constexpr std::size_t kMaxBuiltSceneBytes = 1u << 30;
 constexpr std::size_t kMaxIndexedElements = 2'000'000;  // Of IndexCache::kElementBytes each, with their scene.
+constexpr std::size_t kMaxSolvedBytes = 256u << 20;     // Of what `reference` found.
 constexpr std::chrono::milliseconds kFlush{100};
 constexpr double kMaxCachedResultBytes = 256e6;  // Of those that are on disk too.
 const std::vector<std::string> kServices = {v1::RenderService::service_full_name(),
@@ -209,7 +210,7 @@ struct Server::Parts {
   Metrics metrics{BuildVersion()};
   Logs logs;
   CallTelemetry telemetry{metrics, logs.calls.get(), logs.audit.get(), kServices};
-  IndexCache indexes{kMaxIndexedElements};
+  IndexCache indexes{kMaxIndexedElements, kMaxSolvedBytes};
   ThreadPool pool;
   std::unique_ptr<Storage> storage;  // Null, as are the archive and `durable`: nothing outlives the process.
   std::unique_ptr<JobArchive> archive;

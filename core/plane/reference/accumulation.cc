@@ -8,11 +8,11 @@
 
 namespace flatlight {
 
-Accumulation::Accumulation(Values source, std::optional<std::uint32_t> bounces, Values start, double tolerance,
-                           double rounding)
+Accumulation::Accumulation(Values source, std::optional<std::uint32_t> bounces, Values start, Values weights,
+                           double tolerance, double rounding)
     : rounding_(rounding) {
   if (!bounces) {
-    minimiser_.emplace(std::move(source), std::move(start), tolerance);
+    minimiser_.emplace(std::move(source), std::move(start), tolerance, std::move(weights));
     return;
   }
   before_.assign(source.size(), 0.0);

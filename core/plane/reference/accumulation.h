@@ -16,9 +16,10 @@ class Accumulation {
  public:
   using Values = std::vector<double>;
 
-  // All bounces are summed to `tolerance` of the source, from the guess `start` on; some bounces until their terms are
-  // below `rounding` of the sum.
-  Accumulation(Values source, std::optional<std::uint32_t> bounces, Values start, double tolerance, double rounding);
+  // All bounces are summed to `tolerance` of the source, in the norm of `weights`, from the guess `start` on; some
+  // bounces until their terms are below `rounding` of the sum.
+  Accumulation(Values source, std::optional<std::uint32_t> bounces, Values start, Values weights, double tolerance,
+               double rounding);
 
   // Returns whether it is done.
   bool Step(const LinearMap& transport);

@@ -8,21 +8,27 @@
 namespace flatlight {
 namespace {
 
-using Vector = std::vector<double>;
-
 constexpr std::size_t kRestart = 40;
 constexpr int kMostCycles = 8;
 
-double Product(const Vector& a, const Vector& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 }  // namespace
 
-ResidualMinimiser::ResidualMinimiser(std::vector<double> right, std::vector<double> start, double tolerance)
-    : right_(std::move(right)), x_(std::move(start)), goal_(tolerance * std::sqrt(Product(right_, right_))) {}
+ResidualMinimiser::ResidualMinimiser(std::vector<double> right, std::vector<double> start, double tolerance,
+                                     std::vector<double> weights)
+    : right_(std::move(right)),
+      x_(std::move(start)),
+      weights_(std::move(weights)),
+      goal_(tolerance * std::sqrt(Product(right_, right_))) {}
+
+double ResidualMinimiser::Product(const Vector& a, const Vector& b) const {
+  double sum = 0;
+  if (weights_.empty()) {
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  } else {
+    for (std::size_t i = 0; i < a.size(); ++i) sum += weights_[i] * a[i] * b[i];
+  }
+  return sum;
+}
 
 bool ResidualMinimiser::Step(const LinearMap& map) {
   if (basis_.empty()) return !BeginCycle(map);

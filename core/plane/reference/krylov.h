@@ -11,10 +11,12 @@ using LinearMap = std::function<void(const std::vector<double>& in, std::vector<
 
 // Solves map(x) = right by the method of generalised minimal residuals (Saad and Schultz 1986), from `start` on, until
 // the residual's norm is below `tolerance` times that of `right` or no longer falls. It goes step by step, so that who
-// calls may stop between two of them and go on later. Sums run in a fixed order.
+// calls may stop between two of them and go on later. Sums run in a fixed order. `weights`: positive, of the squares in
+// norms; empty: 1.
 class ResidualMinimiser {
  public:
-  ResidualMinimiser(std::vector<double> right, std::vector<double> start, double tolerance);
+  ResidualMinimiser(std::vector<double> right, std::vector<double> start, double tolerance,
+                    std::vector<double> weights = {});
 
   // Applies the map once. Returns whether the solution is there.
   bool Step(const LinearMap& map);
@@ -24,10 +26,11 @@ class ResidualMinimiser {
  private:
   using Vector = std::vector<double>;
 
+  double Product(const Vector& a, const Vector& b) const;
   bool BeginCycle(const LinearMap& map);
   void EndCycle();
 
-  Vector right_, x_;
+  Vector right_, x_, weights_;
   double goal_;
   int cycles_ = 0;
   double norm_before_ = 0;

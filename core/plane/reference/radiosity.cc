@@ -7,6 +7,7 @@
 
 #include "core/math/check.h"
 #include "core/math/tolerances.h"
+#include "core/plane/reference/error_sum.h"
 #include "core/plane/reference/quadrature.h"
 
 namespace flatlight {
@@ -14,11 +15,9 @@ namespace {
 
 constexpr std::size_t kNodes = kLightCoefficients;
 // The largest value at nodes need not be that of the panel, nor the residual's polynomial the residual.
-constexpr double kCaution = 1.75;
+constexpr double kCaution = 2;
 // Above this the largest bounds of all panels would add up to far more than there is.
 constexpr double kReflectsMuch = 0.8;
-// Of bounds there.
-constexpr double kBoundTolerance = 1e-4;
 // At a kink coefficients fall by the square of their number; beside the last ones, so much of the mean may be missed.
 constexpr double kMissed = 0.3;
 // Of a row's sum, in units of roundoff.
@@ -65,6 +64,7 @@ Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, 
     cells_[i] = CellsBetween(events_[PanelMesh::IndexOf(panel.element, panel.side)], panel.low, panel.high);
     rows_.cells[i].resize(cells_[i].size());
   }
+  if (scene_.traits().max_reflectance > kReflectsMuch && !max_bounces_) positive_.resize(rows_.nodes.size());
   errors_.residual = first_residual_;
   errors_.size.assign(mesh_.size() * channels, 0.0);
   errors_.steep.assign(mesh_.size() * channels, 0.0);
@@ -82,7 +82,12 @@ std::size_t Radiosity::memory() const {
   for (const std::vector<Row>& rows : rows_.cells)
     for (const Row& row : rows) entries += row.panels.size();
   return (entries + high_entries) * (kNodes * sizeof(double) + sizeof(std::uint32_t)) +
-         high_entries * (kResidualCoefficients - kNodes) * sizeof(float);
+         high_entries * (kResidualCoefficients - kNodes + (positive_.empty() ? 0 : kNodes)) * sizeof(float);
+}
+
+void Radiosity::DropRows() {
+  rows_ = {};
+  positive_ = {};
 }
 
 double Radiosity::HalfReflectance(std::size_t panel, std::size_t channel) const {
@@ -132,6 +137,50 @@ void Radiosity::Transport(const Loop& loop, std::size_t channel, const Values& c
   });
 }
 
+// Where weights on nodes are negative these are left out, and the others take their part.
+void Radiosity::FindPositive(std::size_t r) {
+  const Row& row = rows_.nodes[r];
+  std::vector<float>& weights = positive_[r];
+  weights.resize(row.low.size());
+  for (std::size_t e = 0; e < row.panels.size(); ++e) {
+    const double* moments = &row.low[e * kNodes];
+    double weight[kNodes], sum = 0;
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      double w = 0;
+      for (std::size_t k = 0; k < kNodes; ++k) w += moments[k] * to_coefficients_[k * kNodes + n];
+      sum += weight[n] = std::max(w, 0.0);
+    }
+    const double factor = sum > 0 ? moments[0] / sum : 0;
+    for (std::size_t n = 0; n < kNodes; ++n) weights[e * kNodes + n] = static_cast<float>(factor * weight[n]);
+  }
+}
+
+void Radiosity::TransportPositive(const Loop& loop, std::size_t channel, const Values& values, Values& out) const {
+  out.resize(values.size());
+  loop(mesh_.size(), [&](std::size_t i) {
+    for (std::size_t r = i * kNodes; r < (i + 1) * kNodes; ++r) {
+      const Row& row = rows_.nodes[r];
+      const float* weight = positive_[r].data();
+      double sum = 0;
+      for (const std::uint32_t p : row.panels)
+        for (std::size_t n = 0; n < kNodes; ++n) sum += static_cast<double>(*weight++) * values[p * kNodes + n];
+      out[r] = HalfReflectance(i, channel) * sum;
+    }
+  });
+}
+
+Radiosity::Values Radiosity::NodeWeights() const {
+  const GaussRule& rule = Gauss(kNodes);
+  Values weights;
+  weights.reserve(rows_.nodes.size());
+  for (const Panel& panel : mesh_.panels()) {
+    const Chart& chart = charts_[static_cast<std::size_t>(panel.element)];
+    for (std::size_t n = 0; n < kNodes; ++n)
+      weights.push_back(0.5 * (panel.high - panel.low) * chart.At(panel.At(rule.node[n])).speed * rule.weight[n]);
+  }
+  return weights;
+}
+
 Radiosity::Values Radiosity::OnNodesOf(const PanelMesh& mesh, std::size_t channel) const {
   const GaussRule& rule = Gauss(kNodes);
   Values values;
@@ -156,7 +205,7 @@ bool Radiosity::Accumulate(const Loop& loop, const std::function<Values()>& sour
   if (!accumulation_) {
     Values first = source();
     Values guess = start.empty() ? Values(first.size(), 0.0) : start;
-    accumulation_.emplace(std::move(first), max_bounces_, std::move(guess), tolerance, kRounding);
+    accumulation_.emplace(std::move(first), max_bounces_, std::move(guess), NodeWeights(), tolerance, kRounding);
   }
   Values coefficients;
   return accumulation_->Step([&](const Values& in, Values& out) {
@@ -281,16 +330,18 @@ void Radiosity::CheckCells(std::size_t i, std::size_t c) {
 }
 
 void Radiosity::Spread(std::size_t i) {
+  if (!positive_.empty())
+    for (std::size_t r = i * kNodes; r < (i + 1) * kNodes; ++r) FindPositive(r);
   for (std::size_t c = 0; c < channels_; ++c) {
     for (std::size_t r = i * kNodes; r < (i + 1) * kNodes; ++r) {
       const Row& row = rows_.nodes[r];
-      double sum = 0, sum_first = 0;
+      ErrorSum all, of_first;
       for (std::size_t p = 0; p < row.panels.size(); ++p) {
         const double missed = errors_.Missed(row.panels[p] * channels_ + c, &row.low[p * kNodes]);
-        sum += std::abs(row.Times(p, errors_.residual.Of(row.panels[p], c))) + missed;
-        if (max_bounces_) sum_first += std::abs(row.Times(p, first_residual_.Of(row.panels[p], c))) + missed;
+        all.Add(row.Times(p, errors_.residual.Of(row.panels[p], c)), missed);
+        if (max_bounces_) of_first.Add(row.Times(p, first_residual_.Of(row.panels[p], c)), missed);
       }
-      spread_[r * channels_ + c] = HalfReflectance(i, c) * std::max(sum, sum_first);
+      spread_[r * channels_ + c] = HalfReflectance(i, c) * std::max(all.total(), of_first.total());
     }
   }
 }
@@ -307,13 +358,21 @@ bool Radiosity::Bound(const Loop& loop) {
     return values;
   };
   if (scene_.traits().max_reflectance > kReflectsMuch) {
-    if (!Accumulate(loop, source, {}, kBoundTolerance)) return false;
+    if (max_bounces_) {
+      if (!Accumulate(loop, source, {}, 0)) return false;
+    } else {
+      if (!majorant_) majorant_.emplace(source(), NodeWeights(), scene_.traits().max_reflectance);
+      const bool done = majorant_->Step([&](const Values& in, Values& out) { TransportPositive(loop, c, in, out); });
+      if (!done) return false;
+    }
+    const Values& bounds = max_bounces_ ? accumulation_->values() : majorant_->bounds();
     for (std::size_t i = 0; i < mesh_.size(); ++i) {
       double most = 0;
-      for (std::size_t k = 0; k < kNodes; ++k) most = std::max(most, std::abs(accumulation_->values()[i * kNodes + k]));
+      for (std::size_t k = 0; k < kNodes; ++k) most = std::max(most, std::abs(bounds[i * kNodes + k]));
       errors_.value[i * channels_ + c] = most;
     }
     accumulation_.reset();
+    majorant_.reset();
   } else {
     if (!growth_) {
       Values half(mesh_.size());
@@ -329,12 +388,10 @@ bool Radiosity::Bound(const Loop& loop) {
 
 std::vector<double> Radiosity::Influence() const {
   std::vector<double> influence(mesh_.size(), 0.0);
-  const GaussRule& rule = Gauss(kNodes);
+  const Values weights = NodeWeights();
   for (std::size_t r = 0; r < rows_.nodes.size(); ++r) {
     const std::size_t i = r / kNodes;
-    const Panel& panel = mesh_.panels()[i];
-    const double speed = charts_[static_cast<std::size_t>(panel.element)].At(panel.At(rule.node[r % kNodes])).speed;
-    const double weight = 0.5 * (panel.high - panel.low) * speed * rule.weight[r % kNodes];
+    const double weight = weights[r];
     const Row& row = rows_.nodes[r];
     for (std::size_t p = 0; p < row.panels.size(); ++p) {
       double most = 0;

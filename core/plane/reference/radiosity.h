@@ -11,6 +11,7 @@
 #include "core/plane/ray_caster.h"
 #include "core/plane/reference/accumulation.h"
 #include "core/plane/reference/error_growth.h"
+#include "core/plane/reference/majorant.h"
 #include "core/plane/reference/panel_light.h"
 #include "core/plane/reference/panel_mesh.h"
 #include "core/plane/reference/reception.h"
@@ -49,8 +50,11 @@ class Radiosity {
             Radiosity* before = nullptr);
 
   const PanelMesh& mesh() const { return mesh_; }
-  // In bytes, of the rows built so far.
+  // In bytes, of the rows built so far; and of the rest, per panel and about.
   std::size_t memory() const;
+  static constexpr std::size_t kPanelBytes = 3000;
+  // Frees the rows: what follows from the light and its errors stays, finer meshes have rows of their own.
+  void DropRows();
 
   void BuildRows(RowBuilder& builder, std::size_t panel);
   bool Solve(const Loop& loop);
@@ -71,6 +75,12 @@ class Radiosity {
 
   double HalfReflectance(std::size_t panel, std::size_t channel) const;
   void ToCoefficients(const Values& values, Values& coefficients) const;
+  // By arc length, of integrals over the panels.
+  Values NodeWeights() const;
+  // Of a row and its panels, by nodes: integrals over the panels of functions with these values, all but exact where
+  // the panel is seen as a whole, and none of them below 0.
+  void FindPositive(std::size_t row);
+  void TransportPositive(const Loop& loop, std::size_t channel, const Values& values, Values& out) const;
   // T of a light.
   void Transport(const Loop& loop, std::size_t channel, const Values& coefficients, Values& out) const;
   // One step of what comes of a source in the channel that is being worked on.
@@ -95,12 +105,14 @@ class Radiosity {
   std::size_t channel_ = 0;    // That is being solved or bounded.
   std::optional<Accumulation> accumulation_;
   std::optional<ErrorGrowth> growth_;
+  std::optional<Majorant> majorant_;
   Values brightest_;                   // By panel, then channel: the largest radiance at nodes.
   PanelLight light_, first_, before_;  // Of all bounces, of one, of one less than all.
   PanelLight first_residual_;
   LightErrors errors_;
-  Values rounding_;  // By panel, then channel.
-  Values spread_;    // By panel, node, channel: bounds on |T r|.
+  Values rounding_;                           // By panel, then channel.
+  Values spread_;                             // By panel, node, channel: bounds on |T r|.
+  std::vector<std::vector<float>> positive_;  // By panel, node; where bounds need them.
 };
 
 }  // namespace flatlight

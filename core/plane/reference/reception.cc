@@ -13,12 +13,14 @@ namespace {
 
 // Of a term of a sum over Gauss points: a few operations, and its share of the sum's.
 constexpr double kRounding = 8 * kUnitRoundoff;
+// A largest weight so many times the mean one may be larger yet. (On a point its moments say kLightCoefficients^2.)
+constexpr double kUneven = 24;
 
 }  // namespace
 
 // By Hölder's inequality: the largest weight times the mean, both roots of mean squares, or the mean weight times the
-// largest. Weights are known by their first moments, so where they are far from even they are underestimated, but then
-// these are large.
+// largest. Weights are known by their first moments alone: where these say that weights lie on a small part of the
+// panel it may be a far smaller one, and what is off most may lie there.
 double LightErrors::Missed(std::size_t index, const double* weights) const {
   double factor = missed[index];
   if (most[index] > 0 && weights[0] > 0) {
@@ -28,8 +30,10 @@ double LightErrors::Missed(std::size_t index, const double* weights) const {
       largest += count * share;
       square += count * share * share;
     }
-    factor =
-        std::max(factor, std::min({most[index], std::sqrt(square) * root_mean_square[index], largest * mean[index]}));
+    const double off =
+        largest > kUneven ? most[index]
+                          : std::min({most[index], std::sqrt(square) * root_mean_square[index], largest * mean[index]});
+    factor = std::max(factor, off);
   }
   return factor * weights[0];
 }
@@ -38,10 +42,15 @@ Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const Pa
                        const LightErrors* errors, int derivatives) {
   Received sum;
   shares_.clear();
+  for (auto& of_derivative : of_residuals_)
+    for (ErrorSum& of_residuals : of_derivative) of_residuals = {};
   end_errors_ = EndErrors(scene_);
   for (const VisiblePiece& piece : outlook_.From(receiver))
     AddPiece(receiver, mesh, light, errors, derivatives, piece, sum);
-  for (std::size_t c = 0; c < light.channels(); ++c) sum.rounding[0].value[c] += end_errors_.joints();
+  for (std::size_t c = 0; c < light.channels(); ++c) {
+    for (int m = 0; m <= derivatives; ++m) sum.error[m].value[c] += of_residuals_[m][c].total();
+    sum.rounding[0].value[c] += end_errors_.joints();
+  }
   return sum;
 }
 
@@ -96,8 +105,8 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
       const double own = std::max(errors->missed[i * channels + c], errors->root_mean_square[i * channels + c]);
       for (int m = 0; m <= derivatives; ++m) {
         // Derivatives see more of what is not smooth.
-        const double known = std::abs(off[m].value[c]);
-        sum.error[m].value[c] += (m == 0 ? known + missed : 2 * known + 6 * absolute[m] * own) + absolute[m] * other;
+        of_residuals_[m][c].Add((m == 0 ? 1 : 2) * off[m].value[c], m == 0 ? missed : 6 * absolute[m] * own);
+        sum.error[m].value[c] += absolute[m] * other;
       }
       share = std::max(share, std::abs(off[0].value[c]) + missed);
     }

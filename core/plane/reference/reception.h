@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/plane/reference/error_sum.h"
 #include "core/plane/reference/outlook.h"
 #include "core/plane/reference/panel_light.h"
 #include "core/plane/reference/panel_mesh.h"
@@ -68,6 +69,7 @@ class Reception {
   PointCount count_;
   Outlook outlook_;
   std::vector<std::pair<std::size_t, double>> shares_;
+  ErrorSum of_residuals_[3][kMaxChannels];  // By derivative.
   EndErrors end_errors_;
 };
 

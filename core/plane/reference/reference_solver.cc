@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/math/check.h"
 #include "core/math/power.h"
 #include "core/plane/reference/light_events.h"
 #include "core/plane/reference/mesh_maker.h"
@@ -28,11 +29,29 @@ constexpr int kMostIdleRounds = 3;
 constexpr double kFarthest = 1e6;
 // Of what errors are relative to, and of the probe's mean.
 constexpr double kFloor = 0.01;
+// Of the mean of the brightest probe: what is less is all but dark.
+constexpr double kDark = 1e-3;
 constexpr std::size_t kPiecesPerThread = 4;
 // To which equations are solved: of the target error; after a round that brought little; and at least.
 constexpr double kTolerance = 1e-3;
 constexpr double kTighter = 1e-3;
 constexpr double kLeastTolerance = 1e-15;
+
+// None: all, and so many that what is reflected more often is nothing beside rounding.
+std::optional<std::uint32_t> MeaningfulBounces(const Scene& world, std::optional<std::uint32_t> bounces) {
+  if (bounces == 0u || (bounces && UnitPower(world.traits().max_reflectance, *bounces) < 1e-20)) return std::nullopt;
+  return bounces;
+}
+
+std::unique_ptr<SolvedWorld> NewWorld(std::shared_ptr<const RayCaster> caster, const ReferenceOptions& options) {
+  auto world = std::make_unique<SolvedWorld>();
+  world->caster = std::move(caster);
+  world->charts = ChartsOf(world->caster->scene());
+  world->meetings = Meetings(world->caster->scene(), world->charts);
+  world->channels = static_cast<std::size_t>(options.channels);
+  world->max_bounces = options.max_bounces;
+  return world;
+}
 
 double Relative(double error, double size) {
   return error == 0 ? 0 : size > 0 ? error / size : std::numeric_limits<double>::infinity();
@@ -52,15 +71,13 @@ struct ReferenceSolver::Worker {
 };
 
 ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
-                                 const ReferenceOptions& options)
+                                 const ReferenceOptions& options, std::unique_ptr<SolvedWorld> before)
     : scene_(std::move(scene)),
-      caster_(std::move(caster)),
       options_(options),
       channels_(static_cast<std::size_t>(options.channels)),
-      charts_(ChartsOf(caster_->scene())),
-      meetings_(Meetings(caster_->scene(), charts_)),
+      world_(before ? std::move(before) : NewWorld(std::move(caster), options)),
       tolerance_(std::clamp(kTolerance * options.target_error, kLeastTolerance, kTolerance)),
-      lights_(*caster_, {.derivatives = options.derivatives}) {
+      lights_(*world_->caster, {.derivatives = options.derivatives}) {
   for (std::size_t p = 0; p < scene_->probes().size(); ++p) {
     const std::vector<Receiver>& receivers = scene_->probes()[p].receivers;
     const std::size_t count = std::min(receivers.size(), options_.most_points);
@@ -73,22 +90,33 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
   direct_.resize(points_.size());
   relative_before_.resize(points_.size());
   idle_rounds_.resize(points_.size());
-  const Scene& world = caster_->scene();
+  dark_.resize(points_.size());
+  const Scene& world = world_->caster->scene();
+  if (world_->radiosity) {
+    FLATLIGHT_DCHECK(world_->channels == channels_ && world_->max_bounces == options_.max_bounces);
+    options_.max_bounces = MeaningfulBounces(world, options_.max_bounces);
+    StartRound();
+    step_ = FirstOfPoints();
+    return;
+  }
   // Direct light alone needs no panels.
   if (options_.max_bounces == 0u) {
     options_.max_bounces.reset();
-    events_.resize(2 * world.elements().size());
+    world_->events.resize(2 * world.elements().size());
     StartMesh(PanelMesh(world.elements().size(), {}));
     return;
   }
-  // What is reflected more often is nothing beside rounding.
-  if (options_.max_bounces && UnitPower(world.traits().max_reflectance, *options_.max_bounces) < 1e-20)
-    options_.max_bounces.reset();
-  finder_.emplace(*caster_, charts_, meetings_);
+  options_.max_bounces = MeaningfulBounces(world, options_.max_bounces);
+  finder_.emplace(*world_->caster, world_->charts, world_->meetings);
   found_.resize(finder_->count());
 }
 
 ReferenceSolver::~ReferenceSolver() = default;
+
+std::unique_ptr<SolvedWorld> ReferenceSolver::TakeWorld() {
+  FLATLIGHT_DCHECK(state_ == State::kReached);
+  return std::move(world_);
+}
 
 std::unique_ptr<ReferenceSolver::Worker> ReferenceSolver::Take() {
   {
@@ -99,7 +127,7 @@ std::unique_ptr<ReferenceSolver::Worker> ReferenceSolver::Take() {
       return worker;
     }
   }
-  return std::make_unique<Worker>(*caster_, charts_,
+  return std::make_unique<Worker>(*world_->caster, world_->charts,
                                   ExactOptions{.derivatives = options_.derivatives, .channels = options_.channels});
 }
 
@@ -109,28 +137,32 @@ void ReferenceSolver::Return(std::unique_ptr<Worker> worker) {
 }
 
 void ReferenceSolver::StartMesh(PanelMesh mesh) {
-  radiosity_ = std::make_unique<Radiosity>(*caster_, charts_, events_, std::move(mesh), channels_, options_.max_bounces,
-                                           tolerance_, radiosity_.get());
+  world_->radiosity = std::make_unique<Radiosity>(*world_->caster, world_->charts, world_->events, std::move(mesh),
+                                                  channels_, options_.max_bounces, tolerance_, world_->radiosity.get());
+  StartRound();
+  step_ = Step::kRows;
+}
+
+void ReferenceSolver::StartRound() {
   coming_.assign(points_.size(), {});
   shares_.assign(panels(), 0.0);
   split_.assign(panels(), 0);
   places_.assign(panels(), {});
-  step_ = Step::kRows;
   next_ = 0;
   for (const auto& worker : idle_) worker->shares.assign(panels(), 0.0);
 }
 
 void ReferenceSolver::StartFirstMesh() {
-  const Scene& world = caster_->scene();
-  events_ = SortedEvents(world.elements().size(), found_);
+  const Scene& world = world_->caster->scene();
+  world_->events = SortedEvents(world.elements().size(), found_);
   finder_.reset();
   found_.clear();
-  const PanelMesh graded =
-      SplitMeshAt(world, GradedMesh(world, meetings_, kFirstSteps), LightEvents(*caster_, charts_));
+  const PanelMesh graded = SplitMeshAt(world, GradedMesh(world, world_->meetings, kFirstSteps),
+                                       LightEvents(*world_->caster, world_->charts));
   std::vector<std::vector<double>> places(graded.size());
   for (std::size_t i = 0; i < graded.size(); ++i) {
     const Panel& panel = graded.panels()[i];
-    const std::vector<Event>& events = events_[PanelMesh::IndexOf(panel.element, panel.side)];
+    const std::vector<Event>& events = world_->events[PanelMesh::IndexOf(panel.element, panel.side)];
     const auto before = [](const Event& event, double u) { return event.u < u; };
     const auto low = std::lower_bound(events.begin(), events.end(), panel.low, before);
     const auto count = static_cast<std::size_t>(std::lower_bound(low, events.end(), panel.high, before) - low);
@@ -179,7 +211,7 @@ bool ReferenceSolver::StepWhole(Executor& executor, int threads) {
       for (std::size_t j = i * kTogether; j < std::min((i + 1) * kTogether, count); ++j) work(j);
     });
   };
-  return step_ == Step::kSolve ? radiosity_->Solve(loop) : radiosity_->Bound(loop);
+  return step_ == Step::kSolve ? world_->radiosity->Solve(loop) : world_->radiosity->Bound(loop);
 }
 
 void ReferenceSolver::Work(Worker& worker, std::size_t i) {
@@ -187,19 +219,19 @@ void ReferenceSolver::Work(Worker& worker, std::size_t i) {
     case Step::kEvents:
       return finder_->Find(i, found_[i]);
     case Step::kRows:
-      return radiosity_->BuildRows(worker.rows, i);
+      return world_->radiosity->BuildRows(worker.rows, i);
     case Step::kCheck:
-      return radiosity_->Check(i);
+      return world_->radiosity->Check(i);
     case Step::kSpread:
-      return radiosity_->Spread(i);
+      return world_->radiosity->Spread(i);
     case Step::kSlopes:
       return FindSlopes(worker, i);
     case Step::kPoints:
       return Gather(worker, i);
     case Step::kSplit: {
-      const Panel& panel = radiosity_->mesh().panels()[i];
+      const Panel& panel = world_->radiosity->mesh().panels()[i];
       const auto element = static_cast<std::size_t>(panel.element);
-      if (split_[i]) places_[i] = SplitPlaces(panel, radiosity_->CellsOf(i), meetings_[element]);
+      if (split_[i]) places_[i] = SplitPlaces(panel, world_->radiosity->CellsOf(i), world_->meetings[element]);
       return;
     }
     case Step::kSolve:
@@ -209,15 +241,15 @@ void ReferenceSolver::Work(Worker& worker, std::size_t i) {
 }
 
 void ReferenceSolver::FindSlopes(Worker& worker, std::size_t i) {
-  const Panel& panel = radiosity_->mesh().panels()[i];
+  const Panel& panel = world_->radiosity->mesh().panels()[i];
   const GaussRule& rule = Gauss(kLightCoefficients);
   for (const std::size_t k : {std::size_t{0}, kLightCoefficients / 2, kLightCoefficients - 1}) {
-    const Receiver receiver =
-        charts_[static_cast<std::size_t>(panel.element)].ReceiverAt(panel.element, panel.At(rule.node[k]), panel.side);
-    const Received received =
-        worker.reception.At(receiver, radiosity_->mesh(), radiosity_->light(), &radiosity_->errors(), 1);
+    const Receiver receiver = world_->charts[static_cast<std::size_t>(panel.element)].ReceiverAt(
+        panel.element, panel.At(rule.node[k]), panel.side);
+    const Received received = worker.reception.At(receiver, world_->radiosity->mesh(), world_->radiosity->light(),
+                                                  &world_->radiosity->errors(), 1);
     for (std::size_t c = 0; c < channels_; ++c) {
-      double& slope = radiosity_->errors().slope[i * channels_ + c];
+      double& slope = world_->radiosity->errors().slope[i * channels_ + c];
       slope = std::max(slope, received.error[1].value[c] + received.rounding[1].value[c]);
     }
   }
@@ -231,8 +263,8 @@ void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
   }
   worker.shares.resize(panels(), 0.0);
   ExactValue value = direct_[point];
-  const Received received = worker.reception.At(receiver, radiosity_->mesh(), radiosity_->light(),
-                                                &radiosity_->errors(), options_.derivatives);
+  const Received received = worker.reception.At(receiver, world_->radiosity->mesh(), world_->radiosity->light(),
+                                                &world_->radiosity->errors(), options_.derivatives);
   Spectrum* const values[3] = {&value.irradiance, &value.gradient, &value.hessian};
   Spectrum* const errors[3] = {&value.irradiance_error, &value.gradient_error, &value.hessian_error};
   for (int m = 0; m <= options_.derivatives; ++m) {
@@ -251,7 +283,7 @@ void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
   }
   coming_[point] = value;
   // What comes no nearer to the target has no say in what to split.
-  if (idle_rounds_[point] == kMostIdleRounds) return;
+  if (idle_rounds_[point] == kMostIdleRounds || (dark_waits_ && dark_[point] != 0)) return;
   for (const auto& [panel, share] : worker.reception.shares()) {
     double& most = worker.shares[panel];
     most = std::max(most, Relative(share, options_.target_error * size));
@@ -262,9 +294,9 @@ void ReferenceSolver::NextStep() {
   next_ = 0;
   if (step_ == Step::kEvents) return StartFirstMesh();
   if (step_ == Step::kPoints) return EndPoints();
-  if (step_ == Step::kSplit) return StartMesh(SplitMesh(caster_->scene(), radiosity_->mesh(), places_));
+  if (step_ == Step::kSplit) return StartMesh(SplitMesh(world_->caster->scene(), world_->radiosity->mesh(), places_));
   step_ = static_cast<Step>(static_cast<int>(step_) + 1);
-  if (step_ == Step::kSlopes && options_.derivatives < 2) step_ = Step::kPoints;
+  if (step_ == Step::kSlopes) step_ = FirstOfPoints();
 }
 
 void ReferenceSolver::EndPoints() {
@@ -273,13 +305,17 @@ void ReferenceSolver::EndPoints() {
     Spectrum& mean = means[probe_of_point_[i]];
     mean = mean + (1 / points_of_probe_[probe_of_point_[i]]) * coming_[i].irradiance;
   }
+  double brightest = 0;
+  for (const Spectrum& mean : means) brightest = std::max({brightest, mean[0], mean[1], mean[2]});
   relative_error_ = 0;
-  double to_improve = 0;  // The largest of points that still improve.
+  double to_improve = 0, of_dark = 0;  // The largest of points that still improve.
   for (std::size_t i = 0; i < points_.size(); ++i) {
     double relative = 0;
+    dark_[i] = 1;
     for (int c = 0; c < options_.channels; ++c) {
       const double size = std::max(coming_[i].irradiance[c], kFloor * means[probe_of_point_[i]][c]);
       relative = std::max(relative, Relative(coming_[i].irradiance_error[c], size));
+      if (size > kDark * kFloor * brightest) dark_[i] = 0;
     }
     relative_error_ = std::max(relative_error_, relative);
     if (rounds_ > 0 && relative > options_.target_error) {
@@ -291,8 +327,11 @@ void ReferenceSolver::EndPoints() {
       }
     }
     relative_before_[i] = relative;
-    if (idle_rounds_[i] < kMostIdleRounds) to_improve = std::max(to_improve, relative);
+    double& most = dark_[i] != 0 ? of_dark : to_improve;
+    if (idle_rounds_[i] < kMostIdleRounds) most = std::max(most, relative);
   }
+  dark_waits_ = to_improve > options_.target_error;
+  if (!dark_waits_) to_improve = std::max(to_improve, of_dark);
   means_ = std::move(means);
   values_.swap(coming_);
   if (rounds_++ == 0) first_relative_error_ = relative_error_;
@@ -309,7 +348,7 @@ void ReferenceSolver::EndPoints() {
   }
   to_improve = std::min(to_improve, kFarthest);
   // Beside what panels add straight away there is what they add by way of others.
-  std::vector<double> influence = radiosity_->Influence();
+  std::vector<double> influence = world_->radiosity->Influence();
   double all = 0;
   for (const double share : influence) all += share;
   for (std::size_t i = 0; i < panels(); ++i) {
@@ -320,7 +359,7 @@ void ReferenceSolver::EndPoints() {
   split_ = PanelsToSplit(shares_);
   const auto splits = static_cast<double>(std::count(split_.begin(), split_.end(), 1));
   const double growth = 1 + splits / static_cast<double>(panels());
-  if (splits == 0 || growth * growth * static_cast<double>(radiosity_->memory()) > kMostMemory) {
+  if (splits == 0 || growth * growth * static_cast<double>(world_->radiosity->memory()) > kMostMemory) {
     state_ = State::kExhausted;
     return;
   }

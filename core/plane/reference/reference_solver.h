@@ -17,6 +17,7 @@
 #include "core/plane/exact/light_solver.h"
 #include "core/plane/ray_caster.h"
 #include "core/plane/reference/radiosity.h"
+#include "core/plane/reference/solved_world.h"
 #include "core/plane/reference/visibility_events.h"
 
 namespace flatlight {
@@ -35,9 +36,10 @@ struct ReferenceOptions {
 // that are split until the bound on the error is small enough. Works in rounds, each with a finer mesh.
 class ReferenceSolver {
  public:
-  // The caster's scene has the world of `scene`. Requires Lambertian reflection alone.
+  // The caster's scene has the world of `scene`. Requires Lambertian reflection alone. `before`: to go on from, of the
+  // same world, channels and bounces; its caster is used. Its panels are the first round's; null: there is none.
   ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
-                  const ReferenceOptions& options);
+                  const ReferenceOptions& options, std::unique_ptr<SolvedWorld> before = nullptr);
   ~ReferenceSolver();
 
   // Works for about `budget`, until done or cancelled. For equal rounds done the values have equal bits.
@@ -56,10 +58,13 @@ class ReferenceSolver {
   double relative_error() const { return relative_error_; }
   double first_relative_error() const { return first_relative_error_; }
   int rounds() const { return rounds_; }
-  std::size_t panels() const { return radiosity_->mesh().size(); }
+  std::size_t panels() const { return world_->radiosity->mesh().size(); }
   // The panels, and what they reflect, after the last round. Only when the work is done.
-  const PanelMesh& mesh() const { return radiosity_->mesh(); }
-  const PanelLight& light() const { return radiosity_->light(); }
+  const PanelMesh& mesh() const { return world_->radiosity->mesh(); }
+  const PanelLight& light() const { return world_->radiosity->light(); }
+  // What it knows of the world, for solvers to come. Requires kReached; but for values() and errors nothing is to be
+  // called afterwards.
+  std::unique_ptr<SolvedWorld> TakeWorld();
 
  private:
   struct Worker;
@@ -78,17 +83,17 @@ class ReferenceSolver {
   void EndPoints();
   void StartMesh(PanelMesh mesh);
   void StartFirstMesh();
+  void StartRound();
+  // Of a round, once the light of panels is known.
+  Step FirstOfPoints() const { return options_.derivatives < 2 ? Step::kPoints : Step::kSlopes; }
   bool IsWhole() const { return step_ == Step::kSolve || step_ == Step::kBound; }
 
   std::shared_ptr<const Scene> scene_;
-  std::shared_ptr<const RayCaster> caster_;
   ReferenceOptions options_;
   std::size_t channels_;
-  std::vector<Chart> charts_;
-  std::vector<std::vector<double>> meetings_;
+  std::unique_ptr<SolvedWorld> world_;
   std::optional<EventFinder> finder_;  // Until the first mesh.
   std::vector<std::vector<EventPlace>> found_;
-  Events events_;
   double tolerance_;  // To which equations are solved.
   LightSolver lights_;
   std::vector<const Receiver*> points_;
@@ -97,7 +102,6 @@ class ReferenceSolver {
   std::vector<ExactValue> direct_;  // By point.
   std::vector<Spectrum> means_;     // By probe, of irradiance after the round before.
 
-  std::unique_ptr<Radiosity> radiosity_;
   Step step_ = Step::kEvents;
   std::size_t next_ = 0;            // In the step.
   std::vector<ExactValue> coming_;  // By point, of this round.
@@ -112,6 +116,9 @@ class ReferenceSolver {
   // By point: the error after the round before in units of what it is relative to, and how many rounds brought little.
   std::vector<double> relative_before_;
   std::vector<int> idle_rounds_;
+  // By point, of channels: it is all but dark. Such points have a say in what to split when all others are done.
+  std::vector<char> dark_;
+  bool dark_waits_ = false;
   double to_improve_ = 0;  // The largest of points that still improved.
 
   std::mutex mutex_;

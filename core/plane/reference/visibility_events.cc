@@ -166,15 +166,34 @@ void EventFinder::LandAll(std::vector<Candidate>& candidates, std::vector<EventP
   }
 }
 
-// Around the feet of a point, or of a circle's nearest point.
-void EventFinder::AddNear(Point2 p, const Circle* circle, std::vector<EventPlace>& places) const {
+// Whether an element goes from the vertex to a point.
+bool EventFinder::JoinedTo(const Vertex& vertex, Point2 p) const {
+  return std::any_of(vertex.elements.begin(), vertex.elements.end(), [&](ElementId id) {
+    const Element& e = scene_.element(id);
+    return e.a == p || e.b == p;
+  });
+}
+
+// In steps that grow from `width` on, by the chart; the place itself too.
+void EventFinder::AddAround(std::size_t index, double place, double width, std::vector<EventPlace>& places) {
+  if (place > 0 && place < 1) places.push_back({index, place, 1 / width});
+  for (double step = width; step < 1; step *= kGrowth)
+    for (const double u : {place - step, place + step})
+      if (u > 0 && u < 1) places.push_back({index, u, 1 / step});
+}
+
+// Around the feet of a vertex, or of a circle's nearest point, and around that point itself: a gap between two curves
+// lets light in from its ends, which is lost within some widths of it.
+void EventFinder::AddNear(Point2 p, const Vertex* vertex, const Circle* circle, std::vector<EventPlace>& places) const {
   const double radius = circle ? circle->radius : 0;
   for (std::size_t i = 0; i < charts_.size(); ++i) {
     const auto id = static_cast<ElementId>(i);
     const Element& e = scene_.element(id);
     if (!Reflects(id)) continue;
-    const double foot = charts_[i].Find(p);
-    if (!(foot > 0 && foot < 1)) continue;
+    // Beyond an end it is that end which is near.
+    const double found = charts_[i].Find(p), foot = std::clamp(found, 0.0, 1.0);
+    const bool at_end = foot != found;
+    if (at_end && (circle || JoinedTo(*vertex, foot == 0 ? e.a : e.b))) continue;
     const Chart::Place at = charts_[i].At(foot);
     const Vector2 up = p - at.position;
     const double height = Length(up), distance = std::abs(height - radius);
@@ -187,12 +206,25 @@ void EventFinder::AddNear(Point2 p, const Circle* circle, std::vector<EventPlace
     if (circle && !TouchesAt(*circle, nearest, on_circle)) continue;
     if (!caster_.Visible({at.position, id}, {nearest - kShort * (nearest - at.position)})) continue;
     // A point changes the view over its height; a circle over the chord that is as high.
-    const double width = (circle ? std::sqrt(2 * radius * distance) : distance) / at.speed;
-    const std::size_t index = PanelMesh::IndexOf(id, side);
-    places.push_back({index, foot, 1 / width});
-    for (double step = width; step < 1; step *= kGrowth)
-      for (const double u : {foot - step, foot + step})
-        if (u > 0 && u < 1) places.push_back({index, u, 1 / step});
+    const double width = circle ? std::sqrt(2 * radius * distance) : distance;
+    AddAround(PanelMesh::IndexOf(id, side), foot, width / at.speed, places);
+    if (at_end)
+      AddAround(PanelMesh::IndexOf(id, side == Side::kFront ? Side::kBack : Side::kFront), foot, width / at.speed,
+                places);
+    if (circle) {
+      const ElementId arc = static_cast<ElementId>(on_circle.index / 2);
+      if (Reflects(arc))
+        AddAround(on_circle.index, on_circle.u, width / charts_[on_circle.index / 2].At(on_circle.u).speed, places);
+    }
+    for (std::size_t k = 0; vertex && k < vertex->elements.size(); ++k) {
+      const ElementId own = vertex->elements[k];
+      const Element& o = scene_.element(own);
+      if (!Reflects(own) || !(distance < kNear * o.length)) continue;
+      const double end = o.a == p ? 0 : 1;
+      const double own_width = width / charts_[static_cast<std::size_t>(own)].At(end).speed;
+      for (const Side own_side : {Side::kFront, Side::kBack})
+        AddAround(PanelMesh::IndexOf(own, own_side), end, own_width, places);
+    }
   }
 }
 
@@ -216,7 +248,7 @@ void EventFinder::Find(std::size_t i, std::vector<EventPlace>& places) const {
       for (const double sign : {-1.0, 1.0})
         if (touch(v.position, c, sign, at)) AddCandidate(&v, nullptr, v.position, nullptr, &c, at, candidates);
     }
-    AddNear(v.position, nullptr, places);
+    AddNear(v.position, &v, nullptr, places);
   } else {
     const Circle& c = circles_[i - vertices_.size()];
     for (std::size_t j = i - vertices_.size() + 1; j < circles_.size(); ++j) {
@@ -237,7 +269,7 @@ void EventFinder::Find(std::size_t i, std::vector<EventPlace>& places) const {
         }
       }
     }
-    AddNear(c.center, &c, places);
+    AddNear(c.center, nullptr, &c, places);
   }
   LandAll(candidates, places);
 }

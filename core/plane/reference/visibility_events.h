@@ -68,7 +68,9 @@ class EventFinder {
                     std::vector<Candidate>& candidates) const;
   double Strength(const EventPlace& place, Vector2 direction, double near, double far) const;
   void LandAll(std::vector<Candidate>& candidates, std::vector<EventPlace>& places) const;
-  void AddNear(Point2 p, const Circle* circle, std::vector<EventPlace>& places) const;
+  void AddNear(Point2 p, const Vertex* vertex, const Circle* circle, std::vector<EventPlace>& places) const;
+  bool JoinedTo(const Vertex& vertex, Point2 p) const;
+  static void AddAround(std::size_t index, double place, double width, std::vector<EventPlace>& places);
   bool Reflects(ElementId id) const { return !scene_.curve_of(id).reflectance.IsBlack(); }
 
   const RayCaster& caster_;

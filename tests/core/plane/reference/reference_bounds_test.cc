@@ -66,7 +66,7 @@ TEST(ReferenceBoundsTest, NoErrorIsLargerThanItsBound) {
   EXPECT_EQ(gradient.beyond, 0);
   EXPECT_EQ(hessian.beyond, 0);
   EXPECT_GT(irradiance.cautions.size(), 300u);
-  EXPECT_LT(irradiance.MedianCaution(), 30);
+  EXPECT_LT(irradiance.MedianCaution(), 16);
   EXPECT_LT(gradient.MedianCaution(), 100);
   EXPECT_LT(hessian.MedianCaution(), 300);
 }
@@ -75,7 +75,7 @@ TEST(ReferenceBoundsTest, NoErrorIsLargerThanItsBound) {
 // to no light: there the target need not be reached, but the bound holds.
 TEST(ReferenceBoundsTest, BoundsHoldInHardRooms) {
   Counts counts;
-  for (const std::uint64_t seed : {5, 7, 13, 16, 38, 46, 4040}) {
+  for (const std::uint64_t seed : {1, 5, 7, 13, 16, 30, 38, 46, 2055, 4040}) {
     const auto scene = HardRoom(seed);
     ReferenceOptions options = Options(1e-2);
     options.derivatives = 0;
@@ -87,7 +87,7 @@ TEST(ReferenceBoundsTest, BoundsHoldInHardRooms) {
                  fine.values[i].irradiance_error[0]);
     }
   }
-  EXPECT_EQ(counts.values, 7 * 40);
+  EXPECT_EQ(counts.values, 10 * 40);
   EXPECT_EQ(counts.beyond, 0);
   EXPECT_LT(counts.MedianCaution(), 30);
 }
