@@ -47,6 +47,9 @@ class Placement {
   // then leaves no stretch between them without a record, if that takes no more than two thirds of it.
   void SetEvents(std::vector<std::span<const VisibilityEvent>> events) { events_ = std::move(events); }
 
+  // By track.
+  void SetCorners(std::vector<TrackCorners> corners) { corners_ = std::move(corners); }
+
   // The next wave; empty when the records do. Sets the errors of all records. They may have been there before, of
   // whatever placement; on tracks that have none a first wave comes first.
   std::vector<RecordPlace> Next(std::vector<CacheRecord>& records) const;
@@ -66,6 +69,7 @@ class Placement {
 
   std::vector<std::vector<double>> points_;
   std::vector<std::span<const VisibilityEvent>> events_;
+  std::vector<TrackCorners> corners_;
   PlacementOptions options_;
 };
 

@@ -20,6 +20,8 @@ struct VisibilityEvent {
   double at = 0;
   // By how much irradiance and its first two derivatives jump there, to the next larger coordinate.
   std::array<Spectrum, 3> jump;
+  // Irradiance on its left, if all of it is known there: what extrapolation to there can be held against.
+  std::optional<Spectrum> before;
 };
 
 // What a record's place sees, for estimates of how fast irradiance changes. Normalised units.
@@ -66,6 +68,8 @@ struct CacheRecord {
   double EventToRight() const;
   // As if there were no events.
   double SmoothError(double distance) const;
+  // The same, and at least what it takes to be off at the next event on that side as it is seen to be there.
+  double ErrorOfStretch(double place) const;
   double ErrorAt(double place) const;
   // The error that counts.
   double CostAt(double place) const;

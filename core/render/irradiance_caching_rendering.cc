@@ -22,7 +22,7 @@ constexpr std::size_t kRecordsPerThread = 4;
 constexpr double kPanelError = 0.05;
 // What records of an earlier job may be off by, as a share of the tolerance: that job's may have been larger.
 constexpr double kKnownNoise = 0.5;
-constexpr std::size_t kPointsOfPanels = 8;
+constexpr std::size_t kPointsOfPanels = 32;
 constexpr std::size_t kStretch = 32;  // Of points that are searched for events.
 
 }  // namespace
@@ -104,6 +104,7 @@ void IrradianceCachingRendering::BeginWaves() {
 
 void IrradianceCachingRendering::Prepare() {
   placement_.emplace(tracks_.points, placement_options_);
+  if (panels_ || tree_) placement_->SetCorners(tracks_.corners);
   events_.resize(tracks_.tracks.size());
   if (maker_options_.control != ErrorControl::kVisibilityEvents) return;
   for (std::size_t t = 0; t < tracks_.points.size(); ++t) {
