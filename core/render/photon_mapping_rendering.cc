@@ -30,7 +30,6 @@ constexpr std::uint64_t kFirstPhotons = 4096;
 // A pass that a time limit cuts short is lost, so none takes long then.
 constexpr std::uint64_t kMostTimedPhotons = 1 << 16;
 constexpr std::uint64_t kMostPhotons = std::uint64_t{kReplicates} << 32;  // Numbers of paths have 32 bits.
-constexpr std::uint32_t kChunkPaths = 256;
 constexpr std::uint32_t kAnyBounces = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint32_t kFewestRays = 4;  // Of a replicate's gather.
 constexpr std::uint32_t kMostRays = 1 << 12;
@@ -141,11 +140,6 @@ PhotonPurpose PhotonMappingRendering::PurposeOf() const {
   return purpose;
 }
 
-// Of so many photons in all, spread as evenly as can be.
-std::uint64_t PhotonMappingRendering::PathsOf(std::size_t replicate, std::uint64_t photons) {
-  return (photons + kReplicates - 1 - replicate) / kReplicates;
-}
-
 void PhotonMappingRendering::BeginPass() {
   pass_ = {};
   const std::uint64_t all = settings_.photons ? std::max<std::uint64_t>(*settings_.photons, kReplicates) : kMostPhotons;
@@ -161,19 +155,13 @@ void PhotonMappingRendering::BeginPass() {
     count = (all - done + passes - 1) / passes;
   }
   count = std::min({count, all - done, settings_.time_limit ? kMostTimedPhotons : kMostPassPhotons});
-  pass_.first = done;
-  pass_.end = done + count;
   const double of = static_cast<double>(count) / static_cast<double>(OpenEnded() ? kFirstPhotons : all);
   if (gathers_) {
     const double rays = std::ceil(*settings_.samples * of / kReplicates);
     pass_.rays = static_cast<std::uint32_t>(std::clamp(rays, double{kFewestRays}, double{kMostRays}));
     if (!OpenEnded()) pass_.rays = std::max(kFewestRays, static_cast<std::uint32_t>(rays));
   }
-  std::uint64_t most_paths = 0;
-  for (std::size_t r = 0; r < kReplicates; ++r)
-    most_paths = std::max(most_paths, PathsOf(r, pass_.end) - PathsOf(r, pass_.first));
-  pass_.chunks.resize((most_paths + kChunkPaths - 1) / kChunkPaths * kReplicates);
-  pass_.trace = OrderedWork(pass_.chunks.size());
+  pass_.trace = PhotonTrace(settings_.seed.value_or(0), done, done + count);
   pass_.look = OrderedWork(points_.size() * kReplicates);
 }
 
@@ -189,46 +177,20 @@ bool PhotonMappingRendering::FindDirect(std::size_t first, std::size_t last, con
   return i == last;
 }
 
-bool PhotonMappingRendering::TraceChunks(std::size_t first, std::size_t last, const Cancellation& cancellation) {
-  for (std::size_t i = first; i < last; ++i) {
-    Chunk& chunk = pass_.chunks[i];
-    chunk = {};
-    const std::size_t r = i % kReplicates;
-    const SampleStream stream(settings_.seed.value_or(0), ~std::uint64_t{1},
-                              r);  // No probe has a point of this number.
-    const std::uint64_t begin = PathsOf(r, pass_.first) + i / kReplicates * kChunkPaths;
-    const std::uint64_t end = std::min(begin + kChunkPaths, PathsOf(r, pass_.end));
-    for (std::uint64_t path = begin; path < end; ++path) {
-      if (path % 64 == 0 && cancellation.cancelled()) return false;
-      chunk.rays += tracer_->Trace(stream, static_cast<std::uint32_t>(path), chunk.on_reflectors, chunk.on_probes);
-    }
-  }
-  return true;
-}
-
 void PhotonMappingRendering::MakeMaps(Executor& executor, int threads) {
-  PhotonMaps::Photons on_reflectors, on_probes;
-  std::array<double, kReplicates> paths;
-  for (std::size_t r = 0; r < kReplicates; ++r)
-    paths[r] = static_cast<double>(PathsOf(r, pass_.end) - PathsOf(r, pass_.first));
-  executor.ParallelFor(kReplicates, threads, [&](std::size_t r) {
-    for (std::size_t i = r; i < pass_.chunks.size(); i += kReplicates) {
-      const Chunk& chunk = pass_.chunks[i];
-      on_reflectors[r].insert(on_reflectors[r].end(), chunk.on_reflectors.begin(), chunk.on_reflectors.end());
-      on_probes[r].insert(on_probes[r].end(), chunk.on_probes.begin(), chunk.on_probes.end());
-    }
-  });
-  for (const Chunk& chunk : pass_.chunks) rays_ += chunk.rays;
-  pass_.chunks.clear();
+  TracedPhotons photons = pass_.trace.Take(executor, threads);
+  rays_ += photons.rays;
   DensityOptions options = density_;
   options.chooses = !chooses_widths_;
-  options.narrowing = UnitPower(static_cast<double>(pass_.end - pass_.first) / static_cast<double>(pass_.end), 0.2);
+  options.narrowing = UnitPower(
+      static_cast<double>(pass_.trace.end() - pass_.trace.first()) / static_cast<double>(pass_.trace.end()), 0.2);
   const PhotonPurpose purpose = PurposeOf();
   if (purpose.probes != PhotonPurpose::OnProbes::kNone)
-    pass_.probes = std::make_unique<PhotonMaps>(*stretches_, std::move(on_probes), paths, options, executor, threads);
+    pass_.probes = std::make_unique<PhotonMaps>(*stretches_, std::move(photons.on_probes), photons.paths, options,
+                                                executor, threads);
   if (!purpose.reflectors) return;
-  pass_.reflectors =
-      std::make_unique<PhotonMaps>(*stretches_, std::move(on_reflectors), paths, options, executor, threads);
+  pass_.reflectors = std::make_unique<PhotonMaps>(*stretches_, std::move(photons.on_reflectors), photons.paths, options,
+                                                  executor, threads);
   using Told = MapIrradiance::Quantity;
   pass_.known.reserve(2 * kReplicates);
   for (const Told told : {Told::kIrradiance, Told::kBias}) {
@@ -264,7 +226,8 @@ bool PhotonMappingRendering::LookUpAt(std::size_t number, std::size_t r, const C
   double step = 0, cast = 0;
   if (gathers_) {
     std::uint64_t key = key_;
-    for (const std::uint64_t part : {std::uint64_t{number}, std::uint64_t{r}, pass_.first}) key = ChildKey(key, part);
+    for (const std::uint64_t part : {std::uint64_t{number}, std::uint64_t{r}, pass_.trace.first()})
+      key = ChildKey(key, part);
     const GatherGradient gradient = derivatives_ > 0 ? GatherGradient::kFound : GatherGradient::kLeftOut;
     const GatheredLight light =
         GatherReflected(pass_.trees[r], gather_from_[number], pass_.rays, key, gradient, cancellation);
@@ -307,7 +270,7 @@ void PhotonMappingRendering::Advance(Executor& executor, const Cancellation& can
     } else if (!tracer_) {
       end_reason_ = EndReason::kSamplesDone;
     } else if (!pass_.trace.done()) {
-      advance(pass_.trace, &PhotonMappingRendering::TraceChunks);
+      pass_.trace.Advance(*tracer_, executor, threads, cancellation, clock, left);
       if (pass_.trace.done()) MakeMaps(executor, threads);
     } else {
       advance(pass_.look, &PhotonMappingRendering::LookUp);
@@ -324,14 +287,15 @@ void PhotonMappingRendering::Advance(Executor& executor, const Cancellation& can
 void PhotonMappingRendering::EndPass(Clock::Time now) {
   for (std::size_t point = 0; point < points_.size(); ++point) {
     for (std::size_t r = 0; r < kReplicates; ++r) {
-      const auto paths = static_cast<double>(PathsOf(r, pass_.end) - PathsOf(r, pass_.first));
+      const auto paths = static_cast<double>(PhotonTrace::PathsOf(r, pass_.trace.end()) -
+                                             PhotonTrace::PathsOf(r, pass_.trace.first()));
       for (std::size_t i = Index(point, r, 0); i < Index(point, r, 0) + quantities_ * channels_; ++i)
         sums_[i] += paths * next_[i];
     }
     points_[point].step = points_[point].next_step;
     rays_ += cast_[point];
   }
-  photons_done_ = pass_.end;
+  photons_done_ = pass_.trace.end();
   gathered_rays_ += static_cast<double>(pass_.rays) * kReplicates;
   DecideEnd(now);
   if (!done()) BeginPass();
@@ -382,7 +346,8 @@ MeanEstimate PhotonMappingRendering::MeanOf(std::size_t point, std::size_t quant
                                             double step) const {
   std::array<double, kReplicates> values;
   for (std::size_t r = 0; r < kReplicates; ++r)
-    values[r] = sums_[Index(point, r, quantity) + channel] / static_cast<double>(PathsOf(r, photons_done_));
+    values[r] =
+        sums_[Index(point, r, quantity) + channel] / static_cast<double>(PhotonTrace::PathsOf(r, photons_done_));
   return EstimateMean(values, step);
 }
 
@@ -397,7 +362,8 @@ void PhotonMappingRendering::AddDensity(std::size_t number, Value& value) const 
   for (std::size_t j = 0; j < quantities_; ++j) {
     for (std::size_t r = 0; r < kReplicates; ++r) {
       for (std::size_t c = 0; c < channels_; ++c)
-        ladder.densities[j][r] += sums_[Index(number, r, j) + c] / static_cast<double>(PathsOf(r, photons_done_));
+        ladder.densities[j][r] +=
+            sums_[Index(number, r, j) + c] / static_cast<double>(PhotonTrace::PathsOf(r, photons_done_));
     }
   }
   const WidthChoice choice = ChooseWidth(ladder);
@@ -449,7 +415,7 @@ RenderProgress PhotonMappingRendering::Progress() const {
   }
   if (settings_.photons && tracer_) {
     const double within = 0.5 * (pass_.trace.fraction() + (pass_.trace.done() ? pass_.look.fraction() : 0));
-    const auto pass = static_cast<double>(pass_.end - pass_.first);
+    const auto pass = static_cast<double>(pass_.trace.end() - pass_.trace.first());
     progress.fraction =
         std::min(0.999, (static_cast<double>(photons_done_) + within * pass) / static_cast<double>(*settings_.photons));
   }

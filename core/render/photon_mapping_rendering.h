@@ -20,6 +20,7 @@
 #include "core/plane/ray_tracing/ray_tree.h"
 #include "core/render/idle_pool.h"
 #include "core/render/ordered_work.h"
+#include "core/render/photon_trace.h"
 #include "core/render/rendering.h"
 #include "core/statistics/replicates.h"
 
@@ -58,17 +59,9 @@ class PhotonMappingRendering final : public Rendering {
     double step = 0;       // What all replicates may have missed alike, for a path of unit flux: per length.
     double next_step = 0;  // Of the pass under way.
   };
-  // Photons of one path number after another.
-  struct Chunk {
-    std::vector<Photon> on_reflectors, on_probes;
-    double rays = 0;
-  };
   struct Pass {
-    std::uint64_t first = 0;  // Photons of all replicates before it,
-    std::uint64_t end = 0;    // and with it.
-    std::uint32_t rays = 0;   // Of a replicate's gather.
-    OrderedWork trace{0};
-    std::vector<Chunk> chunks;  // By number, then replicate.
+    std::uint32_t rays = 0;  // Of a replicate's gather.
+    PhotonTrace trace;
     std::unique_ptr<const PhotonMaps> reflectors, probes;
     std::vector<MapIrradiance> known;  // By replicate, then those of bias.
     std::vector<RayTree> trees;        // Likewise.
@@ -78,12 +71,10 @@ class PhotonMappingRendering final : public Rendering {
     std::array<Spectrum, kQuantities> value, error;
   };
 
-  static std::uint64_t PathsOf(std::size_t replicate, std::uint64_t photons);
   PhotonPurpose PurposeOf() const;
   bool OpenEnded() const { return settings_.target_error || settings_.time_limit || !settings_.photons; }
   void BeginPass();
   bool FindDirect(std::size_t first, std::size_t last, const Cancellation& cancellation);
-  bool TraceChunks(std::size_t first, std::size_t last, const Cancellation& cancellation);
   void MakeMaps(Executor& executor, int threads);
   bool LookUp(std::size_t first, std::size_t last, const Cancellation& cancellation);
   bool LookUpAt(std::size_t point, std::size_t replicate, const Cancellation& cancellation);
