@@ -57,6 +57,7 @@ IrradianceCachingRendering::IrradianceCachingRendering(std::shared_ptr<const Sce
       options.max_bounces = settings.max_bounces;
       options.end_black_paths = plan.Takes(skip::kBlackPaths);
       tree_.emplace(caster_, options);
+      if (settings.gather == Gather::kPhotonMap) photons_.emplace(scene_, caster_, settings);
     }
   }
   charts_ = ChartsOf(caster_->scene());
@@ -66,6 +67,7 @@ IrradianceCachingRendering::IrradianceCachingRendering(std::shared_ptr<const Sce
     placement_options_.most_records = std::max(std::size_t{*settings.max_records}, tracks_.tracks.size());
   }
   known_records_ = plan.known_records;
+  if (photons_) return;
   if (!panels_) {
     Prepare();
   } else if (known_records_ && maker_options_.control != ErrorControl::kVisibilityEvents) {
@@ -132,6 +134,14 @@ void IrradianceCachingRendering::Advance(Executor& executor, const Cancellation&
       if (panels_->state() == ReferenceSolver::State::kWorks) return;
       maker_options_.reflected = ReflectedLight{&panels_->mesh(), &panels_->light()};
       maker_options_.reflected_error = panels_->relative_error();
+      Prepare();
+    } else if (photons_ && !photons_->done()) {
+      photons_->Advance(executor, threads, cancellation, clock, budget - (clock.Now() - start));
+      if (!photons_->done()) return;
+      rays_ += photons_->rays();
+      doubt_.emplace(photons_->DoubtOf(*tree_));
+      tree_.emplace(photons_->EndOf(*tree_));
+      maker_options_.doubt = &*doubt_;
       Prepare();
     } else if (searched_ < stretches_.size()) {
       FindEvents(executor, threads, cancellation);
@@ -206,6 +216,7 @@ RenderProgress IrradianceCachingRendering::Progress() const {
 std::shared_ptr<const Field> IrradianceCachingRendering::Snapshot() const {
   auto field = std::make_shared<Field>();
   field->rays = rays_;
+  if (photons_) field->photons = static_cast<double>(photons_->traced());
   field->probes.resize(scene_->probes().size());
   // Nothing is known yet.
   if (caster_ && !tracks_.tracks.empty() && records_.empty()) return field;

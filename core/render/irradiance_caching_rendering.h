@@ -19,13 +19,14 @@
 #include "core/plane/reference/chart.h"
 #include "core/plane/reference/reference_solver.h"
 #include "core/render/idle_pool.h"
+#include "core/render/photon_source.h"
 #include "core/render/rendering.h"
 
 namespace flatlight {
 
-// First the light that curves reflect, if panels tell it, and the visibility events along the points, if error control
-// asks for them. Then records are made in waves; a wave
-// is a function of the records before it alone. Points are interpolated from the records of whole waves.
+// First the light that curves reflect, if panels or photons tell it, and the visibility events along the points, if
+// error control asks for them. Then records are made in waves; a wave is a function of the records before it alone.
+// Points are interpolated from the records of whole waves.
 class IrradianceCachingRendering final : public Rendering {
  public:
   // The caster's scene has the world of `scene`; it may be null where nothing emits.
@@ -54,8 +55,10 @@ class IrradianceCachingRendering final : public Rendering {
   int max_threads_;
   PlacementOptions placement_options_;
   RecordMakerOptions maker_options_;
-  std::optional<RayTree> tree_;            // If rays are gathered.
+  std::optional<RayTree> tree_;            // If rays are gathered,
+  std::optional<RayTree> doubt_;           // and if they end in a photon map: what they are off by.
   std::optional<ReferenceSolver> panels_;  // If panels tell what is reflected.
+  std::optional<PhotonSource> photons_;    // If rays end in a photon map.
   std::vector<Chart> charts_;
   Tracks tracks_;
   std::shared_ptr<const std::vector<RecordField>> known_records_;  // Of an earlier job; null if there are none.
