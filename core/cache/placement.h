@@ -33,6 +33,11 @@ struct PlacementOptions {
 struct RecordPlace {
   std::uint32_t track = 0;
   double at = 0;
+
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.track, self.at);
+  }
 };
 
 // A track is a stretch along which irradiance is smooth but for visibility events: one side of a straight or smoothly

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -39,8 +41,13 @@ class IrradianceCachingRendering final : public Rendering {
   EndReason end_reason() const override;
   RenderProgress Progress() const override;
   std::shared_ptr<const Field> Snapshot() const override;
+  // Of events and records; panels and photons are found again. None before these are.
+  std::string Checkpoint(std::size_t most_bytes) const override;
+  bool Resume(std::string_view checkpoint) override;
 
  private:
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream);
   // Whether records of this gather may be off by so much.
   bool IsGoodEnough(const CacheRecord& record) const;
   void Prepare();
@@ -73,7 +80,9 @@ class IrradianceCachingRendering final : public Rendering {
   std::vector<CacheRecord> made_;                     // and its records so far.
   std::uint32_t waves_ = 0;
   double rays_ = 0;
-  bool begun_ = false;  // There was a first wave.
+  std::string resumed_;        // The checkpoint that this began with, until it has come further.
+  bool has_advanced_ = false;  // Since then.
+  bool begun_ = false;         // There was a first wave.
   bool done_ = false;
   IdlePool<RecordMaker> makers_;
 };

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/plane/exact/exact.h"
@@ -41,6 +43,9 @@ class PhotonMappingRendering final : public Rendering {
   EndReason end_reason() const override { return *end_reason_; }
   RenderProgress Progress() const override;
   std::shared_ptr<const Field> Snapshot() const override;
+  // Of whole passes; none before there is another one.
+  std::string Checkpoint(std::size_t most_bytes) const override;
+  bool Resume(std::string_view checkpoint) override;
 
   // Photons of a pass, all replicates together, at most.
   static constexpr std::uint64_t kMostPassPhotons = std::uint64_t{1} << 18;
@@ -58,6 +63,10 @@ class PhotonMappingRendering final : public Rendering {
     double widest = 0;     // Of its densities.
     double step = 0;       // What all replicates may have missed alike, for a path of unit flux: per length.
     double next_step = 0;  // Of the pass under way.
+    template <class Self, class Stream>
+    static void State(Self& self, Stream& stream) {
+      stream(self.widest, self.step);
+    }
   };
   struct Pass {
     std::uint32_t rays = 0;  // Of a replicate's gather.
@@ -79,6 +88,8 @@ class PhotonMappingRendering final : public Rendering {
   bool LookUp(std::size_t first, std::size_t last, const Cancellation& cancellation);
   bool LookUpAt(std::size_t point, std::size_t replicate, const Cancellation& cancellation);
   void EndPass(Clock::Time now);
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream);
   void DecideEnd(Clock::Time now);
   // Where a replicate's sum of a quantity of a point begins: channel after channel.
   std::size_t Index(std::size_t point, std::size_t replicate, std::size_t quantity) const {
@@ -124,6 +135,10 @@ class PhotonMappingRendering final : public Rendering {
   double rays_ = 0;
   std::optional<Clock::Time> start_;
   double seconds_ = 0;
+  double pass_rays_ = 0;                         // Of `rays_`: of the pass under way.
+  std::uint64_t resumed_photons_ = 0;            // Of whole passes, that were done when this was resumed.
+  std::optional<Clock::Duration::rep> resumed_;  // The time that it had taken; set until it goes on.
+  Clock::Time now_;                              // When it last worked.
   std::optional<EndReason> end_reason_;
 };
 
