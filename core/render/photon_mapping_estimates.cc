@@ -107,7 +107,7 @@ double PhotonMappingRendering::WorstError() const {
 
 RenderProgress PhotonMappingRendering::Progress() const {
   RenderProgress progress;
-  progress.rays = rays_;
+  progress.rays = rays_ + chain_rays_;
   progress.samples = gathered_rays_;
   progress.relative_error = worst_error_;
   if (done()) {
@@ -128,7 +128,7 @@ RenderProgress PhotonMappingRendering::Progress() const {
 
 std::shared_ptr<const Field> PhotonMappingRendering::Snapshot() const {
   auto field = std::make_shared<Field>();
-  field->rays = rays_;
+  field->rays = rays_ + chain_rays_;
   field->photons = static_cast<double>(photons_done_);
   const WorldUnits units(scene_->frame());
   // Nothing is known yet.

@@ -83,7 +83,6 @@ PhotonMappingRendering::PhotonMappingRendering(std::shared_ptr<const Scene> scen
     return;
   }
   reflects_ = !DirectLightOnly(*scene_, settings_) && !plan.Takes(skip::kBounces);
-  hidden_ = gathers_ && reflects_ && HasChainedLight(*scene_);
   brightest_ = BrightestBeyond(*scene_);
   density_.kernel = settings_.kernel.value_or(gathers_ ? Kernel::kBox : Kernel::kEpanechnikov);
   if (settings_.bandwidth) density_.bandwidth = *settings_.bandwidth / scene_->frame().scale;
@@ -112,12 +111,13 @@ PhotonMappingRendering::PhotonMappingRendering(std::shared_ptr<const Scene> scen
   }
   chooses_widths_ = !gathers_ && !settings_.bandwidth && !settings_.neighbours;
   if (chooses_widths_) quantities_ = points_.size() <= kManyPoints ? kWidths : kFewWidths;
-  const PhotonPurpose purpose = PurposeOf();
+  PhotonPurpose purpose;
+  purpose.reflectors = gathers_, purpose.probes = !gathers_;
   std::optional<std::uint32_t> most_bounces = settings_.max_bounces;
   if (!reflects_) most_bounces = 0;
   // What a gather finds is reflected once more.
   std::optional<std::uint32_t> traced = most_bounces;
-  if (traced && gathers_ && !hidden_) --*traced;
+  if (traced && gathers_) --*traced;
   light_.emplace(caster_, Around(*scene_), traced);
   if (light_->sources().empty()) {
     light_.reset();
@@ -129,14 +129,6 @@ PhotonMappingRendering::PhotonMappingRendering(std::shared_ptr<const Scene> scen
   next_ = sums_;
   cast_.assign(points_.size(), 0);
   BeginPass();
-}
-
-PhotonPurpose PhotonMappingRendering::PurposeOf() const {
-  PhotonPurpose purpose;
-  purpose.reflectors = gathers_;
-  if (!gathers_) purpose.probes = PhotonPurpose::OnProbes::kAll;
-  if (hidden_) purpose.probes = PhotonPurpose::OnProbes::kHidden;
-  return purpose;
 }
 
 void PhotonMappingRendering::BeginPass() {
@@ -164,6 +156,15 @@ void PhotonMappingRendering::BeginPass() {
   pass_.look = OrderedWork(points_.size() * kReplicates);
 }
 
+void PhotonMappingRendering::AddChained(const Receiver& receiver, const std::vector<ChainedLight>& ways,
+                                        Spectrum& irradiance, Spectrum& gradient) const {
+  for (const ChainedLight& way : ways) {
+    const Spectrum more = way.light.cosine * way.light.irradiance;
+    irradiance = irradiance + more;
+    if (derivatives_ > 0) gradient = gradient + tree_->chains().AlongReceiver(way, receiver)[1] * more;
+  }
+}
+
 bool PhotonMappingRendering::FindDirect(std::size_t first, std::size_t last, const Cancellation& cancellation) {
   std::unique_ptr<ExactSolver> solver =
       solvers_.Take([&] { return std::make_unique<ExactSolver>(*scene_, caster_->bvh(), exact_); });
@@ -171,6 +172,12 @@ bool PhotonMappingRendering::FindDirect(std::size_t first, std::size_t last, con
   for (; i < last && !cancellation.cancelled(); ++i) {
     points_[i].direct = solver->Evaluate(*points_[i].receiver);
     if (lights_) lights_->Add(*points_[i].receiver, points_[i].direct);
+    if (!tree_) continue;
+    std::vector<ChainedLight> chained;
+    points_[i].chain_rays = 0;
+    tree_->chains().Find(ChainEffort::kFine, SurfacePoint{gather_from_[i].position, gather_from_[i].element},
+                         gather_from_[i].normal, tree_->most_bounces(), points_[i].chain_rays, chained);
+    AddChained(gather_from_[i], chained, points_[i].direct.irradiance, points_[i].direct.gradient);
   }
   solvers_.Return(std::move(solver));
   return i == last;
@@ -184,11 +191,10 @@ void PhotonMappingRendering::MakeMaps(Executor& executor, int threads) {
   options.chooses = !chooses_widths_;
   options.narrowing = UnitPower(
       static_cast<double>(pass_.trace.end() - pass_.trace.first()) / static_cast<double>(pass_.trace.end()), 0.2);
-  const PhotonPurpose purpose = PurposeOf();
-  if (purpose.probes != PhotonPurpose::OnProbes::kNone)
+  if (!gathers_)
     pass_.probes = std::make_unique<PhotonMaps>(*stretches_, std::move(photons.on_probes), photons.paths, options,
                                                 executor, threads);
-  if (!purpose.reflectors) return;
+  if (!gathers_) return;
   pass_.reflectors = std::make_unique<PhotonMaps>(*stretches_, std::move(photons.on_reflectors), photons.paths, options,
                                                   executor, threads);
   using Told = MapIrradiance::Quantity;
@@ -237,6 +243,11 @@ bool PhotonMappingRendering::LookUpAt(std::size_t number, std::size_t r, const C
     if (!light.whole || !bias.whole) return false;
     value = {light.irradiance, bias.irradiance, light.gradient, bias.gradient};
     cast = light.cast + bias.cast;
+    std::vector<ChainedLight> chained;
+    tree_->chains().FindByChance(ChainEffort::kFine, {gather_from_[number].position, gather_from_[number].element},
+                                 gather_from_[number].normal, tree_->most_bounces(), ToUnitInterval(ChildKey(key, 1)),
+                                 cast, chained);
+    AddChained(gather_from_[number], chained, value[kIrradiance], value[kGradient]);
     // Of one photon more that is reflected somewhere.
     step = 0.5 * LargestReflectance(*scene_) * light.inverse_distance;
   }
@@ -268,6 +279,8 @@ void PhotonMappingRendering::Advance(Executor& executor, const Cancellation& can
     };
     if (!direct_.done()) {
       advance(direct_, &PhotonMappingRendering::FindDirect);
+      if (direct_.done())
+        for (const Point& point : points_) chain_rays_ += point.chain_rays;
     } else if (!tracer_) {
       end_reason_ = EndReason::kSamplesDone;
     } else if (!pass_.trace.done()) {

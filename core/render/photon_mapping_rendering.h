@@ -58,11 +58,12 @@ class PhotonMappingRendering final : public Rendering {
 
   struct Point {
     const Receiver* receiver = nullptr;
-    SidePlace place;       // Of meaning where it lies on a curve.
-    ExactValue direct;     // Beside what photons tell.
-    double widest = 0;     // Of its densities.
-    double step = 0;       // What all replicates may have missed alike, for a path of unit flux: per length.
-    double next_step = 0;  // Of the pass under way.
+    SidePlace place;        // Of meaning where it lies on a curve.
+    ExactValue direct;      // Beside what photons tell.
+    double chain_rays = 0;  // Cast for that.
+    double widest = 0;      // Of its densities.
+    double step = 0;        // What all replicates may have missed alike, for a path of unit flux: per length.
+    double next_step = 0;   // Of the pass under way.
     template <class Self, class Stream>
     static void State(Self& self, Stream& stream) {
       stream(self.widest, self.step);
@@ -80,9 +81,10 @@ class PhotonMappingRendering final : public Rendering {
     std::array<Spectrum, kQuantities> value, error;
   };
 
-  PhotonPurpose PurposeOf() const;
   bool OpenEnded() const { return settings_.target_error || settings_.time_limit || !settings_.photons; }
   void BeginPass();
+  void AddChained(const Receiver& receiver, const std::vector<ChainedLight>& ways, Spectrum& irradiance,
+                  Spectrum& gradient) const;
   bool FindDirect(std::size_t first, std::size_t last, const Cancellation& cancellation);
   void MakeMaps(Executor& executor, int threads);
   bool LookUp(std::size_t first, std::size_t last, const Cancellation& cancellation);
@@ -107,7 +109,6 @@ class PhotonMappingRendering final : public Rendering {
   bool chooses_widths_ = false;  // Quantities of a point are its densities with several widths.
   int derivatives_;
   bool reflects_ = false;  // There is more than direct light.
-  bool hidden_ = false;    // Photons tell points what no gather finds.
   double brightest_ = 0;   // Radiance that rays may find by mirrors and glass, or gloss.
   std::size_t channels_;
   std::size_t quantities_;
@@ -135,6 +136,7 @@ class PhotonMappingRendering final : public Rendering {
   double rays_ = 0;
   std::optional<Clock::Time> start_;
   double seconds_ = 0;
+  double chain_rays_ = 0;                        // Beside these: for light of chains.
   double pass_rays_ = 0;                         // Of `rays_`: of the pass under way.
   std::uint64_t resumed_photons_ = 0;            // Of whole passes, that were done when this was resumed.
   std::optional<Clock::Duration::rep> resumed_;  // The time that it had taken; set until it goes on.

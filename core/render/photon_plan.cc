@@ -80,20 +80,6 @@ void CheckPhotonMapping(const Scene& scene, const Settings& settings, Diagnostic
     }
     return;
   }
-  if (!HasChainedLight(scene)) return;
-  if (off) {
-    diagnostics.Add("settings.method",
-                    "photon-mapping finds the light that plane.lights send over mirrors and glass "
-                    "on curves alone, and probe \"" +
-                        *off +
-                        "\" has points that lie on none: give the light a surface, a small "
-                        "arc that emits");
-  }
-  if (settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone) {
-    diagnostics.Add("settings.derivatives",
-                    "photon-mapping gives none of the light that plane.lights send over mirrors and glass: leave this "
-                    "out, or give the light a surface, a small arc that emits");
-  }
 }
 
 void FillPhotonDefaults(const Scene& scene, Settings& settings) {
@@ -101,8 +87,9 @@ void FillPhotonDefaults(const Scene& scene, Settings& settings) {
   settings.final_gather = Gathers(scene, settings);
   const bool direct = DirectLightOnly(scene, settings);
   if (!settings.derivatives) {
-    const bool some = *settings.final_gather && (direct || !HasChainedLight(scene));
-    settings.derivatives = !some ? Derivatives::kNone : direct ? Derivatives::kHessian : Derivatives::kGradient;
+    settings.derivatives = !*settings.final_gather ? Derivatives::kNone
+                           : direct                ? Derivatives::kHessian
+                                                   : Derivatives::kGradient;
   }
   if (*settings.final_gather && direct) return;
   if (!settings.photons && !open_ended) settings.photons = kDefaultPhotons;
