@@ -59,6 +59,19 @@ Difference FromReference(const std::shared_ptr<const Scene>& scene, const Settin
   return difference;
 }
 
+// Of the points: where the error is more than so many times its estimate.
+double ShareAboveEstimate(const Field& field, const Field& truth, double times) {
+  double above = 0, count = 0;
+  for (std::size_t p = 0; p < field.probes.size(); ++p) {
+    for (std::size_t i = 0; i < field.probes[p].irradiance.size(); ++i, ++count) {
+      const double error = std::abs(field.probes[p].irradiance[i] - truth.probes[p].irradiance[i]);
+      // What the reference is off by, 1e-6, aside.
+      if (error > times * field.probes[p].estimated_error[i] + 1e-6 * truth.probes[p].irradiance[i]) ++above;
+    }
+  }
+  return above / count;
+}
+
 // A room with a lamp, a blocker, a disc, and a wall that stands on the floor and lets light through above.
 SceneMaker DividedRoom(std::uint32_t points = 60) {
   SceneMaker maker = SquareRoom({.reflectance = {0.6}}, points);
@@ -125,6 +138,29 @@ TEST(IrradianceCachingRenderingTest, AgreesWithTheReferenceInARoundRoom) {
   EXPECT_LT(difference.largest, 5 * settings.tolerance.value());
 }
 
+TEST(IrradianceCachingRenderingTest, EstimatesHold) {
+  SceneMaker round;
+  round.Arc("ring", {{0, 0}, 1, 0, 6.283185307179586}, {.reflectance = {0.6}});
+  round.Arc("sun", {{-0.25, 0.1}, 0.15, 0, -6.283185307179586}, {.reflectance = {0.1}, .radiance = {3}});
+  round.Arc("moon", {{0.4, -0.2}, 0.25, 1, -2.5}, {.reflectance = {0.6}}).Probe("ring", 300);
+  for (const auto& scene : {DividedRoom().Build(), round.Build(), ReflectingFloor(true, true).Build()}) {
+    Settings truth;
+    truth.method = Method::kReference;
+    truth.derivatives = Derivatives::kNone;
+    const auto expected = Render(scene, truth).field;
+    for (const double tolerance : {0.03, 0.003}) {
+      for (const std::uint32_t degree : {1u, 2u}) {
+        Settings settings = Caching();
+        settings.tolerance = tolerance;
+        settings.extrapolation = degree;
+        const auto field = Render(scene, settings).field;
+        EXPECT_LT(ShareAboveEstimate(*field, *expected, 1), 0.06) << tolerance << ' ' << degree;
+        EXPECT_LT(ShareAboveEstimate(*field, *expected, 2), 0.02) << tolerance << ' ' << degree;
+      }
+    }
+  }
+}
+
 TEST(IrradianceCachingRenderingTest, RaysTellWhatPanelsTell) {
   const auto scene = DividedRoom().Build();
   Settings settings = Caching();
@@ -158,14 +194,7 @@ TEST(IrradianceCachingRenderingTest, PhotonsTellWhatPanelsTell) {
     truth.max_bounces = bounces;
     const auto expected = Render(scene, truth).field, field = Render(scene, settings).field;
     EXPECT_EQ(field->photons, static_cast<double>(*settings.photons));
-    double off = 0, count = 0;
-    for (std::size_t p = 0; p < field->probes.size(); ++p) {
-      for (std::size_t i = 0; i < field->probes[p].irradiance.size(); ++i, ++count) {
-        const double error = std::abs(field->probes[p].irradiance[i] - expected->probes[p].irradiance[i]);
-        if (error > 2 * field->probes[p].estimated_error[i]) ++off;
-      }
-    }
-    EXPECT_LT(off, 0.05 * count);
+    EXPECT_LT(ShareAboveEstimate(*field, *expected, 2), 0.05);
     settings.seed = 1;
     EXPECT_NE(HashOf(*Render(scene, settings).field), HashOf(*field));
   }
