@@ -5,12 +5,18 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
+
+#include "core/cache/record_pair.h"
 
 namespace flatlight {
 namespace {
 
 // A record is wanted at most so many times as densely at one end of a gap as at the other.
 constexpr double kSteepest = 8;
+constexpr double kFarOff = 1e50;        // As good as infinite.
+constexpr double kMostError = 1;        // Relative; more tells no more.
+constexpr double kLeftOfUnknown = 0.1;  // Of the distance of records, at the ends of where nothing is known yet.
 
 double Power(double base, std::size_t exponent) {
   double power = 1;
@@ -35,10 +41,32 @@ double Quantile(double share, double first, double last) {
 double Gap::ErrorWith(std::size_t count, std::size_t power) const {
   if (count == 0) return error;
   if (count >= points.size()) return 0;
+  if (joins) return JoinedErrorWith(count, power);
   if (Halves() > 0)
     return error * Power(static_cast<double>(Halves()) / static_cast<double>(Halves() + 2 * count), power);
   // Nothing vouches for it yet: it may be no better than what lies beside.
   return error / Power(static_cast<double>(2 * count), power);
+}
+
+double Gap::JoinedErrorWith(std::size_t count, std::size_t power) const {
+  const double n = static_cast<double>(count);
+  if (before && after) return error / Power(n + 1, 2 * power);
+  // If derivatives grow as those of 1/x do, what an error of extrapolation over a distance is to irradiance its square
+  // is to what joined records leave between them over twice that distance.
+  const double most = std::min(error, kMostError);
+  if (before || after) return most * most / Power(2 * n, 2 * power);
+  return count == 1 ? most / Power(2, power) : most * most / Power(4 * (n - 1), 2 * power);
+}
+
+double Gap::ShareOf(std::size_t number, std::size_t count) const {
+  const double n = static_cast<double>(count), k = static_cast<double>(number);
+  if (!joins) return (2 * k + 1 + (before ? 1 : 0)) / (2 * n + static_cast<double>(Halves()));
+  if (before && after) return (k + 1) / (n + 1);
+  // Toward a corner distances shrink by the square, and none is right in it.
+  const auto graded = [&](double nth) { return ((nth + 0.5) / (n + 0.5)) * ((nth + 0.5) / (n + 0.5)); };
+  if (before) return corners.high ? 1 - graded(n - 1 - k) : (k + 1) / n;
+  if (after) return corners.low ? graded(k) : k / n;
+  return count == 1 ? 0.5 : (k + kLeftOfUnknown) / (n - 1 + 2 * kLeftOfUnknown);
 }
 
 std::vector<double> Gap::Places(std::size_t count, std::size_t power) const {
@@ -56,10 +84,8 @@ std::vector<double> Gap::Places(std::size_t count, std::size_t power) const {
   first = most > 0 && std::isfinite(most) ? std::max(first / most, 1 / kSteepest) : 1;
   last = most > 0 && std::isfinite(most) ? std::max(last / most, 1 / kSteepest) : 1;
   std::vector<double> places;
-  const double halves = static_cast<double>(Halves() + 2 * count);
   for (std::size_t k = 0; k < count; ++k) {
-    const double share = (static_cast<double>(2 * k + 1) + (before ? 1 : 0)) / halves;
-    const double place = low + width * Quantile(share, first, last);
+    const double place = low + width * Quantile(ShareOf(k, count), first, last);
     // The nearest point that is left, and enough of them for those still to come.
     const auto begin = places.empty() ? free.begin() : std::upper_bound(free.begin(), free.end(), places.back());
     const auto end = free.end() - static_cast<std::ptrdiff_t>(count - k - 1);
@@ -70,19 +96,29 @@ std::vector<double> Gap::Places(std::size_t count, std::size_t power) const {
   return places;
 }
 
-std::vector<Gap> FindGaps(std::span<const double> points, std::span<const CacheRecord* const> records) {
+std::vector<Gap> FindGaps(std::span<const double> points, std::span<const CacheRecord* const> records,
+                          const TrackCorners& corners) {
   std::vector<Gap> gaps;
   std::size_t next = 0;  // Among the points.
   const auto add = [&](const CacheRecord* before, const CacheRecord* after, double low, double high, bool closed,
                        const CacheRecord* left, const CacheRecord* right) {
     Gap gap;
     gap.before = before, gap.after = after, gap.low = low, gap.high = high;
+    gap.corners = {corners.low && !left, corners.high && !right};
+    gap.joins = left ? left->goes_on : right && right->goes_on;
+    std::optional<RecordPair> pair;
+    if (before && after && RecordPair::Joins(*before, *after)) pair.emplace(*before, *after, before->degree);
     const std::size_t begin = next;
     while (next < points.size() && (closed ? points[next] <= high : points[next] < high)) {
       double error = std::numeric_limits<double>::infinity();
-      for (const CacheRecord* record : {left, right})
-        if (record) error = std::min(error, record->CostAt(points[next]));
+      if (pair) {
+        error = pair->CostAt(std::max(points[next], low));
+      } else {
+        for (const CacheRecord* record : {left, right})
+          if (record) error = std::min(error, record->CostAt(points[next]));
+      }
       gap.error = std::max(gap.error, error);
+      gap.squares += std::min(error, kFarOff) * std::min(error, kFarOff);
       ++next;
     }
     gap.points = points.subspan(begin, next - begin);

@@ -2,6 +2,7 @@
 #include "core/cache/interpolation.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -25,6 +26,10 @@ TrackInterpolation::TrackInterpolation(std::vector<const CacheRecord*> records, 
     reach_.push_back(reach_.empty() ? reach : std::max(reach_.back(), reach));
     left_reach_ = std::max(left_reach_, record->left_radius);
   }
+  pairs_.resize(records_.size());
+  for (std::size_t i = 1; i < records_.size(); ++i)
+    if (RecordPair::Joins(*records_[i - 1], *records_[i]))
+      pairs_[i - 1].emplace(*records_[i - 1], *records_[i], degree_);
 }
 
 Interpolated TrackInterpolation::At(double place) const {
@@ -45,6 +50,17 @@ Interpolated TrackInterpolation::At(double place) const {
   };
   const auto after = std::upper_bound(records_.begin(), records_.end(), place,
                                       [](double x, const CacheRecord* record) { return x < record->at; });
+  if (after != records_.begin() && after != records_.end()) {
+    const auto left = std::prev(after);
+    if (const std::optional<RecordPair>& pair = pairs_[static_cast<std::size_t>(left - records_.begin())]) {
+      const double share = pair->LeftShare(place);
+      sum.irradiance = pair->At(place);
+      for (double& value : sum.irradiance.value) value = std::max(value, 0.0);
+      sum.error = pair->ErrorAt(place) + share * (*left)->noise + (1 - share) * (*after)->noise;
+      sum.records = place == (*left)->at ? 1 : 2;
+      return sum;
+    }
+  }
   for (std::size_t i = static_cast<std::size_t>(after - records_.begin()); i-- > 0 && reach_[i] >= place;)
     add(*records_[i]);
   for (auto record = after; record != records_.end() && (*record)->at - left_reach_ <= place; ++record) add(**record);

@@ -3,10 +3,12 @@
 #define FLATLIGHT_CORE_CACHE_INTERPOLATION_H_
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/cache/error_control.h"
 #include "core/cache/record.h"
+#include "core/cache/record_pair.h"
 
 namespace flatlight {
 
@@ -25,7 +27,8 @@ enum class Weighting : bool {
 
 Weighting WeightingOf(ErrorControl control);
 
-// The mean of what the records of one track whose footprints cover a place extrapolate to.
+// What the two records beside a place tell together, where they are joined (RecordPair); else the mean of what the
+// records of one track whose footprints cover it extrapolate to.
 class TrackInterpolation {
  public:
   // `records`: of one track.
@@ -34,9 +37,10 @@ class TrackInterpolation {
   Interpolated At(double place) const;
 
  private:
-  std::vector<const CacheRecord*> records_;  // In order.
-  std::vector<double> reach_;                // How far those up to it reach to the right.
-  double left_reach_ = 0;                    // The largest radius to the left.
+  std::vector<const CacheRecord*> records_;       // In order.
+  std::vector<std::optional<RecordPair>> pairs_;  // Of each and the next one.
+  std::vector<double> reach_;                     // How far those up to it reach to the right.
+  double left_reach_ = 0;                         // The largest radius to the left.
   std::size_t degree_;
   Weighting weighting_;
 };

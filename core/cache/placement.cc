@@ -68,7 +68,12 @@ std::vector<RecordPlace> Placement::First(const std::vector<std::uint32_t>& trac
     // As many as there are stretches between events, if that is not too many.
     std::vector<std::size_t> enough = counts;
     std::size_t sum = 0;
-    for (std::size_t i = 0; i < tracks.size(); ++i) sum += enough[i] = std::max(counts[i], Stretches(tracks[i]).size());
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      enough[i] = Stretches(tracks[i]).size();
+      // One that knows its derivatives tells where the others belong.
+      if (options_.control != ErrorControl::kVisibilityEvents) enough[i] = std::max(enough[i], counts[i]);
+      sum += enough[i];
+    }
     if (3 * sum <= 2 * most) counts = enough;
   }
   std::vector<RecordPlace> places;
@@ -160,16 +165,17 @@ std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) cons
     for (CacheRecord* record : sorted[t]) SetErrors(options_.control, options_.degree, scale, *record);
     if (options_.clamp_neighbours) ClampNeighbours(sorted[t], scale.extent);
     const std::vector<const CacheRecord*> known(sorted[t].begin(), sorted[t].end());
-    for (const Gap& gap : FindGaps(points_[t], known)) candidates.push_back({static_cast<std::uint32_t>(t), gap});
+    for (const Gap& gap : FindGaps(points_[t], known, t < corners_.size() ? corners_[t] : TrackCorners()))
+      candidates.push_back({static_cast<std::uint32_t>(t), gap});
   }
   if (options_.most_records) {
     // All that is left is planned for where the error is largest; if there is a good estimate of it, where it takes
     // most off the sum of squares.
     const auto gain = [&](const Candidate& c) {
-      const double now = std::min(c.gap.ErrorWith(c.count, power), 1e100);
-      if (options_.control != ErrorControl::kVisibilityEvents) return now;
-      const double then = std::min(c.gap.ErrorWith(c.count + 1, power), 1e100);
-      return static_cast<double>(c.gap.points.size()) * (now * now - then * then);
+      const double now = std::min(c.gap.ErrorWith(c.count, power), 1e50);
+      if (options_.control != ErrorControl::kVisibilityEvents || c.gap.error == 0) return now;
+      const double then = std::min(c.gap.ErrorWith(c.count + 1, power), 1e50), error = std::min(c.gap.error, 1e50);
+      return c.gap.squares * (now - then) * (now + then) / (error * error);
     };
     std::priority_queue<std::pair<double, std::size_t>> best;
     for (std::size_t i = candidates.size(); i-- > 0;) best.emplace(gain(candidates[i]), i);
@@ -202,7 +208,6 @@ std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) cons
 
 void Placement::SetFootprints(std::vector<CacheRecord>& records) const {
   const auto sorted = Sorted(records);
-  const std::size_t power = GrowthPower(options_.control, options_.degree);
   // Of the records beside a point.
   const auto beside = [&](const std::vector<CacheRecord*>& track, double point) {
     const auto after = std::upper_bound(track.begin(), track.end(), point,
@@ -219,7 +224,7 @@ void Placement::SetFootprints(std::vector<CacheRecord>& records) const {
   };
   // One error for all, which is enough everywhere.
   double error = options_.tolerance;
-  if (options_.most_records) {
+  if (options_.most_records && options_.control != ErrorControl::kVisibilityEvents) {
     error = 0;
     for (std::size_t t = 0; t < points_.size(); ++t)
       for (const double point : points_[t]) error = std::max(error, nearest(sorted[t], point)->CostAt(point));
@@ -235,9 +240,8 @@ void Placement::SetFootprints(std::vector<CacheRecord>& records) const {
         if (i > 0) left = record.at - track[i - 1]->at;
         if (i + 1 < track.size()) right = track[i + 1]->at - record.at;
       }
-      if (options_.control == ErrorControl::kVisibilityEvents && power % 2 == 1) {
-        // Errors that grow with an odd power have different signs to both sides: where two records overlap, what one
-        // says too much the other says too little.
+      if (options_.control == ErrorControl::kVisibilityEvents) {
+        // Neighbours are joined (RecordPair).
         record.left_radius = std::min(left, record.EventToLeft());
         record.right_radius = std::min(right, record.EventToRight());
       } else {

@@ -33,6 +33,11 @@ struct PlacementOptions {
 struct RecordPlace {
   std::uint32_t track = 0;
   double at = 0;
+
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.track, self.at);
+  }
 };
 
 // A track is a stretch along which irradiance is smooth but for visibility events: one side of a straight or smoothly
@@ -46,6 +51,9 @@ class Placement {
   // By track, in order, if they are known before there are records; they must outlive this. The first wave of a budget
   // then leaves no stretch between them without a record, if that takes no more than two thirds of it.
   void SetEvents(std::vector<std::span<const VisibilityEvent>> events) { events_ = std::move(events); }
+
+  // By track.
+  void SetCorners(std::vector<TrackCorners> corners) { corners_ = std::move(corners); }
 
   // The next wave; empty when the records do. Sets the errors of all records. They may have been there before, of
   // whatever placement; on tracks that have none a first wave comes first.
@@ -66,6 +74,7 @@ class Placement {
 
   std::vector<std::vector<double>> points_;
   std::vector<std::span<const VisibilityEvent>> events_;
+  std::vector<TrackCorners> corners_;
   PlacementOptions options_;
 };
 

@@ -14,6 +14,9 @@ namespace {
 // At which x log x has the right rest at its end, x = 0.
 constexpr double kMostRatio = 0.75;
 
+// So many times the estimate an error at an event is no surprise.
+constexpr double kAsExpected = 1.25;
+
 using Event = std::span<const VisibilityEvent>::iterator;
 
 // The first one to the right of a place.
@@ -54,8 +57,24 @@ double CacheRecord::SmoothError(double distance) const {
   return error + last * ratio / (1 - ratio);
 }
 
+double CacheRecord::ErrorOfStretch(double place) const {
+  const double distance = std::abs(place - at), smooth = SmoothError(distance);
+  if (!goes_on || distance == 0) return smooth;
+  const Event right = Beyond(events, at);
+  if (place > at ? right == events.end() : right == events.begin()) return smooth;
+  const VisibilityEvent& event = place > at ? *right : *std::prev(right);
+  const double range = std::abs(event.at - at);
+  if (!event.before || range == 0) return smooth;
+  const Spectrum truth = place > at ? *event.before : *event.before + event.jump[0];
+  const double off = (Extrapolate(*this, event.at, degree) - truth).MaxSize();
+  if (off <= kAsExpected * SmoothError(range) * scale) return smooth;
+  if (!(scale > 0)) return std::numeric_limits<double>::infinity();
+  // Something happens on the way that no event tells, as where a shadow's edge on another curve comes into sight.
+  return std::max(smooth, std::min(distance / range, 1.0) * off / scale);
+}
+
 double CacheRecord::ErrorAt(double place) const {
-  const double smooth = SmoothError(std::abs(place - at));
+  const double smooth = ErrorOfStretch(place);
   double jumps = 0;
   const Event here = Beyond(events, at), there = Beyond(events, place);
   for (Event event = std::min(here, there); event != std::max(here, there); ++event)

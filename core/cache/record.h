@@ -20,6 +20,13 @@ struct VisibilityEvent {
   double at = 0;
   // By how much irradiance and its first two derivatives jump there, to the next larger coordinate.
   std::array<Spectrum, 3> jump;
+  // Irradiance on its left, if all of it is known there: what extrapolation to there can be held against.
+  std::optional<Spectrum> before;
+
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.at, self.jump, self.before);
+  }
 };
 
 // What a record's place sees, for estimates of how fast irradiance changes. Normalised units.
@@ -31,6 +38,11 @@ struct Surroundings {
   // signs, for with them it vanishes in closed rooms (THEORY 17 A13).
   double geometric = 0;
   double turning = 0;  // Sum of |sin'' theta| over all directions where radiance jumps.
+
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.inverse_distance, self.radiometric, self.geometric, self.turning);
+  }
 };
 
 // Coordinates along tracks (see Placement) and all else in normalised units.
@@ -60,12 +72,23 @@ struct CacheRecord {
   // The footprint: it counts at distances below these.
   double left_radius = 0, right_radius = 0;
 
+  // All but the events.
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.track, self.at, self.wave, self.derivative, self.known, self.noise, self.unknown_jump,
+           self.surroundings, self.growth, self.goes_on, self.scale, self.least, self.degree, self.left_radius,
+           self.right_radius);
+    stream.Require(self.known > 0 && self.known <= kRecordOrders && self.degree < kRecordOrders);
+  }
+
   double Irradiance() const { return derivative[0].Max(); }
   // Distances to the nearest events; infinite if there are none. At an event itself its right side counts.
   double EventToLeft() const;
   double EventToRight() const;
   // As if there were no events.
   double SmoothError(double distance) const;
+  // The same, and at least what it takes to be off at the next event on that side as it is seen to be there.
+  double ErrorOfStretch(double place) const;
   double ErrorAt(double place) const;
   // The error that counts.
   double CostAt(double place) const;

@@ -10,6 +10,7 @@
 #include "core/render/light_paths.h"
 #include "core/render/record_exchange.h"
 #include "core/render/skips.h"
+#include "core/render/state_stream.h"
 #include "core/render/world_units.h"
 #include "core/sampling/hash.h"
 
@@ -22,7 +23,7 @@ constexpr std::size_t kRecordsPerThread = 4;
 constexpr double kPanelError = 0.05;
 // What records of an earlier job may be off by, as a share of the tolerance: that job's may have been larger.
 constexpr double kKnownNoise = 0.5;
-constexpr std::size_t kPointsOfPanels = 8;
+constexpr std::size_t kPointsOfPanels = 32;
 constexpr std::size_t kStretch = 32;  // Of points that are searched for events.
 
 }  // namespace
@@ -57,6 +58,7 @@ IrradianceCachingRendering::IrradianceCachingRendering(std::shared_ptr<const Sce
       options.max_bounces = settings.max_bounces;
       options.end_black_paths = plan.Takes(skip::kBlackPaths);
       tree_.emplace(caster_, options);
+      if (settings.gather == Gather::kPhotonMap) photons_.emplace(scene_, caster_, settings);
     }
   }
   charts_ = ChartsOf(caster_->scene());
@@ -66,6 +68,7 @@ IrradianceCachingRendering::IrradianceCachingRendering(std::shared_ptr<const Sce
     placement_options_.most_records = std::max(std::size_t{*settings.max_records}, tracks_.tracks.size());
   }
   known_records_ = plan.known_records;
+  if (photons_) return;
   if (!panels_) {
     Prepare();
   } else if (known_records_ && maker_options_.control != ErrorControl::kVisibilityEvents) {
@@ -100,16 +103,19 @@ void IrradianceCachingRendering::BeginWaves() {
   wave_ = placement_->Next(records_);
   done_ = wave_.empty();
   begun_ = true;
+  resumed_.clear();
 }
 
 void IrradianceCachingRendering::Prepare() {
   placement_.emplace(tracks_.points, placement_options_);
+  stretches_.clear();
+  if (panels_ || tree_) placement_->SetCorners(tracks_.corners);
   events_.resize(tracks_.tracks.size());
-  if (maker_options_.control != ErrorControl::kVisibilityEvents) return;
-  for (std::size_t t = 0; t < tracks_.points.size(); ++t) {
+  for (std::size_t t = 0; t < tracks_.points.size() && maker_options_.control == ErrorControl::kVisibilityEvents; ++t) {
     for (std::size_t first = 0; first + 1 < tracks_.points[t].size(); first += kStretch)
       stretches_.emplace_back(static_cast<std::uint32_t>(t), first);
   }
+  if (begun_) placement_->SetEvents({events_.begin(), events_.end()});
 }
 
 EndReason IrradianceCachingRendering::end_reason() const {
@@ -125,12 +131,21 @@ void IrradianceCachingRendering::Advance(Executor& executor, const Cancellation&
                                          Clock::Duration budget) {
   const Clock::Time start = clock.Now();
   const int threads = std::max(std::min(max_threads_, executor.threads()), 1);
+  has_advanced_ = true;
   while (!done_ && !cancellation.cancelled()) {
     if (panels_ && panels_->state() == ReferenceSolver::State::kWorks) {
       panels_->Advance(executor, threads, cancellation, clock, budget - (clock.Now() - start));
       if (panels_->state() == ReferenceSolver::State::kWorks) return;
       maker_options_.reflected = ReflectedLight{&panels_->mesh(), &panels_->light()};
       maker_options_.reflected_error = panels_->relative_error();
+      Prepare();
+    } else if (photons_ && !photons_->done()) {
+      photons_->Advance(executor, threads, cancellation, clock, budget - (clock.Now() - start));
+      if (!photons_->done()) return;
+      if (resumed_.empty()) rays_ += photons_->rays();
+      doubt_.emplace(photons_->DoubtOf(*tree_));
+      tree_.emplace(photons_->EndOf(*tree_));
+      maker_options_.doubt = &*doubt_;
       Prepare();
     } else if (searched_ < stretches_.size()) {
       FindEvents(executor, threads, cancellation);
@@ -161,6 +176,7 @@ void IrradianceCachingRendering::FindEvents(Executor& executor, int threads, con
     events.insert(events.end(), found[i].begin(), found[i].end());
   }
   searched_ += count;
+  resumed_.clear();
 }
 
 void IrradianceCachingRendering::MakeRecords(Executor& executor, int threads, const Cancellation& cancellation) {
@@ -179,12 +195,46 @@ void IrradianceCachingRendering::MakeRecords(Executor& executor, int threads, co
   // Some may have been left half made.
   if (cancellation.cancelled()) return;
   for (std::size_t i = 0; i < count; ++i) rays_ += cast[i], made_.push_back(records[i]);
+  resumed_.clear();
   if (made_.size() < wave_.size()) return;
   records_.insert(records_.end(), made_.begin(), made_.end());
   made_.clear();
   ++waves_;
   wave_ = placement_->Next(records_);
   done_ = wave_.empty();
+}
+
+template <class Self, class Stream>
+void IrradianceCachingRendering::State(Self& self, Stream& stream) {
+  stream.Filled(self.events_);
+  stream(self.searched_, self.records_, self.wave_, self.made_, self.waves_, self.reused_, self.rays_, self.begun_);
+  stream.Require(self.reused_ <= self.records_.size() && self.made_.size() <= self.wave_.size());
+  const std::size_t tracks = self.tracks_.tracks.size();
+  for (const auto* records : {&self.records_, &self.made_})
+    for (const CacheRecord& record : *records) stream.Require(record.track < tracks);
+  for (const RecordPlace& place : self.wave_) stream.Require(place.track < tracks);
+}
+
+std::string IrradianceCachingRendering::Checkpoint(std::size_t most_bytes) const {
+  if (!resumed_.empty()) return has_advanced_ || resumed_.size() > most_bytes ? std::string() : resumed_;
+  if (!placement_ || done_) return {};
+  StateWriter writer(most_bytes);
+  State(*this, writer);
+  return writer.Take();
+}
+
+bool IrradianceCachingRendering::Resume(std::string_view checkpoint) {
+  if (done_) return false;
+  events_.resize(tracks_.tracks.size());
+  StateReader reader(checkpoint);
+  State(*this, reader);
+  if (!reader.AtEnd()) return false;
+  for (auto* records : {&records_, &made_})
+    for (CacheRecord& record : *records) record.events = events_[record.track];
+  resumed_ = checkpoint;
+  // Else when it is known what records gather from.
+  if (placement_) Prepare();
+  return true;
 }
 
 RenderProgress IrradianceCachingRendering::Progress() const {
@@ -205,9 +255,10 @@ RenderProgress IrradianceCachingRendering::Progress() const {
 std::shared_ptr<const Field> IrradianceCachingRendering::Snapshot() const {
   auto field = std::make_shared<Field>();
   field->rays = rays_;
+  if (photons_) field->photons = static_cast<double>(photons_->traced());
   field->probes.resize(scene_->probes().size());
   // Nothing is known yet.
-  if (caster_ && !tracks_.tracks.empty() && records_.empty()) return field;
+  if (caster_ && !tracks_.tracks.empty() && (records_.empty() || !placement_)) return field;
   const WorldUnits units(scene_->frame());
   const auto channels = static_cast<std::size_t>(scene_->channels());
   std::vector<CacheRecord> records = records_;

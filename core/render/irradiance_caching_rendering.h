@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,13 +21,14 @@
 #include "core/plane/reference/chart.h"
 #include "core/plane/reference/reference_solver.h"
 #include "core/render/idle_pool.h"
+#include "core/render/photon_source.h"
 #include "core/render/rendering.h"
 
 namespace flatlight {
 
-// First the light that curves reflect, if panels tell it, and the visibility events along the points, if error control
-// asks for them. Then records are made in waves; a wave
-// is a function of the records before it alone. Points are interpolated from the records of whole waves.
+// First the light that curves reflect, if panels or photons tell it, and the visibility events along the points, if
+// error control asks for them. Then records are made in waves; a wave is a function of the records before it alone.
+// Points are interpolated from the records of whole waves.
 class IrradianceCachingRendering final : public Rendering {
  public:
   // The caster's scene has the world of `scene`; it may be null where nothing emits.
@@ -38,8 +41,13 @@ class IrradianceCachingRendering final : public Rendering {
   EndReason end_reason() const override;
   RenderProgress Progress() const override;
   std::shared_ptr<const Field> Snapshot() const override;
+  // Of events and records; panels and photons are found again. None before these are.
+  std::string Checkpoint(std::size_t most_bytes) const override;
+  bool Resume(std::string_view checkpoint) override;
 
  private:
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream);
   // Whether records of this gather may be off by so much.
   bool IsGoodEnough(const CacheRecord& record) const;
   void Prepare();
@@ -54,8 +62,10 @@ class IrradianceCachingRendering final : public Rendering {
   int max_threads_;
   PlacementOptions placement_options_;
   RecordMakerOptions maker_options_;
-  std::optional<RayTree> tree_;            // If rays are gathered.
+  std::optional<RayTree> tree_;            // If rays are gathered,
+  std::optional<RayTree> doubt_;           // and if they end in a photon map: what they are off by.
   std::optional<ReferenceSolver> panels_;  // If panels tell what is reflected.
+  std::optional<PhotonSource> photons_;    // If rays end in a photon map.
   std::vector<Chart> charts_;
   Tracks tracks_;
   std::shared_ptr<const std::vector<RecordField>> known_records_;  // Of an earlier job; null if there are none.
@@ -70,7 +80,9 @@ class IrradianceCachingRendering final : public Rendering {
   std::vector<CacheRecord> made_;                     // and its records so far.
   std::uint32_t waves_ = 0;
   double rays_ = 0;
-  bool begun_ = false;  // There was a first wave.
+  std::string resumed_;        // The checkpoint that this began with, until it has come further.
+  bool has_advanced_ = false;  // Since then.
+  bool begun_ = false;         // There was a first wave.
   bool done_ = false;
   IdlePool<RecordMaker> makers_;
 };

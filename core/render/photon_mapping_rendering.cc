@@ -15,7 +15,7 @@
 #include "core/render/onward_points.h"
 #include "core/render/probe_points.h"
 #include "core/render/skips.h"
-#include "core/render/world_units.h"
+#include "core/render/state_stream.h"
 #include "core/sampling/hash.h"
 #include "core/scene/element_frame.h"
 
@@ -24,13 +24,11 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr double kDarkest = 0.01;  // Errors count in this share of the probe's mean at least (DESIGN 3).
 // A first pass of so many photons shows soon what is to come, where there are many more.
 constexpr std::uint64_t kFirstPhotons = 4096;
 // A pass that a time limit cuts short is lost, so none takes long then.
 constexpr std::uint64_t kMostTimedPhotons = 1 << 16;
 constexpr std::uint64_t kMostPhotons = std::uint64_t{kReplicates} << 32;  // Numbers of paths have 32 bits.
-constexpr std::uint32_t kChunkPaths = 256;
 constexpr std::uint32_t kAnyBounces = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint32_t kFewestRays = 4;  // Of a replicate's gather.
 constexpr std::uint32_t kMostRays = 1 << 12;
@@ -85,7 +83,6 @@ PhotonMappingRendering::PhotonMappingRendering(std::shared_ptr<const Scene> scen
     return;
   }
   reflects_ = !DirectLightOnly(*scene_, settings_) && !plan.Takes(skip::kBounces);
-  hidden_ = gathers_ && reflects_ && HasChainedLight(*scene_);
   brightest_ = BrightestBeyond(*scene_);
   density_.kernel = settings_.kernel.value_or(gathers_ ? Kernel::kBox : Kernel::kEpanechnikov);
   if (settings_.bandwidth) density_.bandwidth = *settings_.bandwidth / scene_->frame().scale;
@@ -114,12 +111,13 @@ PhotonMappingRendering::PhotonMappingRendering(std::shared_ptr<const Scene> scen
   }
   chooses_widths_ = !gathers_ && !settings_.bandwidth && !settings_.neighbours;
   if (chooses_widths_) quantities_ = points_.size() <= kManyPoints ? kWidths : kFewWidths;
-  const PhotonPurpose purpose = PurposeOf();
+  PhotonPurpose purpose;
+  purpose.reflectors = gathers_, purpose.probes = !gathers_;
   std::optional<std::uint32_t> most_bounces = settings_.max_bounces;
   if (!reflects_) most_bounces = 0;
   // What a gather finds is reflected once more.
   std::optional<std::uint32_t> traced = most_bounces;
-  if (traced && gathers_ && !hidden_) --*traced;
+  if (traced && gathers_) --*traced;
   light_.emplace(caster_, Around(*scene_), traced);
   if (light_->sources().empty()) {
     light_.reset();
@@ -131,19 +129,6 @@ PhotonMappingRendering::PhotonMappingRendering(std::shared_ptr<const Scene> scen
   next_ = sums_;
   cast_.assign(points_.size(), 0);
   BeginPass();
-}
-
-PhotonPurpose PhotonMappingRendering::PurposeOf() const {
-  PhotonPurpose purpose;
-  purpose.reflectors = gathers_;
-  if (!gathers_) purpose.probes = PhotonPurpose::OnProbes::kAll;
-  if (hidden_) purpose.probes = PhotonPurpose::OnProbes::kHidden;
-  return purpose;
-}
-
-// Of so many photons in all, spread as evenly as can be.
-std::uint64_t PhotonMappingRendering::PathsOf(std::size_t replicate, std::uint64_t photons) {
-  return (photons + kReplicates - 1 - replicate) / kReplicates;
 }
 
 void PhotonMappingRendering::BeginPass() {
@@ -161,20 +146,23 @@ void PhotonMappingRendering::BeginPass() {
     count = (all - done + passes - 1) / passes;
   }
   count = std::min({count, all - done, settings_.time_limit ? kMostTimedPhotons : kMostPassPhotons});
-  pass_.first = done;
-  pass_.end = done + count;
   const double of = static_cast<double>(count) / static_cast<double>(OpenEnded() ? kFirstPhotons : all);
   if (gathers_) {
     const double rays = std::ceil(*settings_.samples * of / kReplicates);
     pass_.rays = static_cast<std::uint32_t>(std::clamp(rays, double{kFewestRays}, double{kMostRays}));
     if (!OpenEnded()) pass_.rays = std::max(kFewestRays, static_cast<std::uint32_t>(rays));
   }
-  std::uint64_t most_paths = 0;
-  for (std::size_t r = 0; r < kReplicates; ++r)
-    most_paths = std::max(most_paths, PathsOf(r, pass_.end) - PathsOf(r, pass_.first));
-  pass_.chunks.resize((most_paths + kChunkPaths - 1) / kChunkPaths * kReplicates);
-  pass_.trace = OrderedWork(pass_.chunks.size());
+  pass_.trace = PhotonTrace(settings_.seed.value_or(0), done, done + count);
   pass_.look = OrderedWork(points_.size() * kReplicates);
+}
+
+void PhotonMappingRendering::AddChained(const Receiver& receiver, const std::vector<ChainedLight>& ways,
+                                        Spectrum& irradiance, Spectrum& gradient) const {
+  for (const ChainedLight& way : ways) {
+    const Spectrum more = way.light.cosine * way.light.irradiance;
+    irradiance = irradiance + more;
+    if (derivatives_ > 0) gradient = gradient + tree_->chains().AlongReceiver(way, receiver)[1] * more;
+  }
 }
 
 bool PhotonMappingRendering::FindDirect(std::size_t first, std::size_t last, const Cancellation& cancellation) {
@@ -184,51 +172,31 @@ bool PhotonMappingRendering::FindDirect(std::size_t first, std::size_t last, con
   for (; i < last && !cancellation.cancelled(); ++i) {
     points_[i].direct = solver->Evaluate(*points_[i].receiver);
     if (lights_) lights_->Add(*points_[i].receiver, points_[i].direct);
+    if (!tree_) continue;
+    std::vector<ChainedLight> chained;
+    points_[i].chain_rays = 0;
+    tree_->chains().Find(ChainEffort::kFine, SurfacePoint{gather_from_[i].position, gather_from_[i].element},
+                         gather_from_[i].normal, tree_->most_bounces(), points_[i].chain_rays, chained);
+    AddChained(gather_from_[i], chained, points_[i].direct.irradiance, points_[i].direct.gradient);
   }
   solvers_.Return(std::move(solver));
   return i == last;
 }
 
-bool PhotonMappingRendering::TraceChunks(std::size_t first, std::size_t last, const Cancellation& cancellation) {
-  for (std::size_t i = first; i < last; ++i) {
-    Chunk& chunk = pass_.chunks[i];
-    chunk = {};
-    const std::size_t r = i % kReplicates;
-    const SampleStream stream(settings_.seed.value_or(0), ~std::uint64_t{1},
-                              r);  // No probe has a point of this number.
-    const std::uint64_t begin = PathsOf(r, pass_.first) + i / kReplicates * kChunkPaths;
-    const std::uint64_t end = std::min(begin + kChunkPaths, PathsOf(r, pass_.end));
-    for (std::uint64_t path = begin; path < end; ++path) {
-      if (path % 64 == 0 && cancellation.cancelled()) return false;
-      chunk.rays += tracer_->Trace(stream, static_cast<std::uint32_t>(path), chunk.on_reflectors, chunk.on_probes);
-    }
-  }
-  return true;
-}
-
 void PhotonMappingRendering::MakeMaps(Executor& executor, int threads) {
-  PhotonMaps::Photons on_reflectors, on_probes;
-  std::array<double, kReplicates> paths;
-  for (std::size_t r = 0; r < kReplicates; ++r)
-    paths[r] = static_cast<double>(PathsOf(r, pass_.end) - PathsOf(r, pass_.first));
-  executor.ParallelFor(kReplicates, threads, [&](std::size_t r) {
-    for (std::size_t i = r; i < pass_.chunks.size(); i += kReplicates) {
-      const Chunk& chunk = pass_.chunks[i];
-      on_reflectors[r].insert(on_reflectors[r].end(), chunk.on_reflectors.begin(), chunk.on_reflectors.end());
-      on_probes[r].insert(on_probes[r].end(), chunk.on_probes.begin(), chunk.on_probes.end());
-    }
-  });
-  for (const Chunk& chunk : pass_.chunks) rays_ += chunk.rays;
-  pass_.chunks.clear();
+  TracedPhotons photons = pass_.trace.Take(executor, threads);
+  rays_ += photons.rays;
+  pass_rays_ += photons.rays;
   DensityOptions options = density_;
   options.chooses = !chooses_widths_;
-  options.narrowing = UnitPower(static_cast<double>(pass_.end - pass_.first) / static_cast<double>(pass_.end), 0.2);
-  const PhotonPurpose purpose = PurposeOf();
-  if (purpose.probes != PhotonPurpose::OnProbes::kNone)
-    pass_.probes = std::make_unique<PhotonMaps>(*stretches_, std::move(on_probes), paths, options, executor, threads);
-  if (!purpose.reflectors) return;
-  pass_.reflectors =
-      std::make_unique<PhotonMaps>(*stretches_, std::move(on_reflectors), paths, options, executor, threads);
+  options.narrowing = UnitPower(
+      static_cast<double>(pass_.trace.end() - pass_.trace.first()) / static_cast<double>(pass_.trace.end()), 0.2);
+  if (!gathers_)
+    pass_.probes = std::make_unique<PhotonMaps>(*stretches_, std::move(photons.on_probes), photons.paths, options,
+                                                executor, threads);
+  if (!gathers_) return;
+  pass_.reflectors = std::make_unique<PhotonMaps>(*stretches_, std::move(photons.on_reflectors), photons.paths, options,
+                                                  executor, threads);
   using Told = MapIrradiance::Quantity;
   pass_.known.reserve(2 * kReplicates);
   for (const Told told : {Told::kIrradiance, Told::kBias}) {
@@ -264,7 +232,8 @@ bool PhotonMappingRendering::LookUpAt(std::size_t number, std::size_t r, const C
   double step = 0, cast = 0;
   if (gathers_) {
     std::uint64_t key = key_;
-    for (const std::uint64_t part : {std::uint64_t{number}, std::uint64_t{r}, pass_.first}) key = ChildKey(key, part);
+    for (const std::uint64_t part : {std::uint64_t{number}, std::uint64_t{r}, pass_.trace.first()})
+      key = ChildKey(key, part);
     const GatherGradient gradient = derivatives_ > 0 ? GatherGradient::kFound : GatherGradient::kLeftOut;
     const GatheredLight light =
         GatherReflected(pass_.trees[r], gather_from_[number], pass_.rays, key, gradient, cancellation);
@@ -274,6 +243,11 @@ bool PhotonMappingRendering::LookUpAt(std::size_t number, std::size_t r, const C
     if (!light.whole || !bias.whole) return false;
     value = {light.irradiance, bias.irradiance, light.gradient, bias.gradient};
     cast = light.cast + bias.cast;
+    std::vector<ChainedLight> chained;
+    tree_->chains().FindByChance(ChainEffort::kFine, {gather_from_[number].position, gather_from_[number].element},
+                                 gather_from_[number].normal, tree_->most_bounces(), ToUnitInterval(ChildKey(key, 1)),
+                                 cast, chained);
+    AddChained(gather_from_[number], chained, value[kIrradiance], value[kGradient]);
     // Of one photon more that is reflected somewhere.
     step = 0.5 * LargestReflectance(*scene_) * light.inverse_distance;
   }
@@ -293,7 +267,8 @@ void PhotonMappingRendering::Advance(Executor& executor, const Cancellation& can
                                      Clock::Duration budget) {
   if (done()) return;
   const Clock::Time begin = clock.Now();
-  if (!start_) start_ = begin;
+  if (!start_) start_ = begin - Clock::Duration(resumed_.value_or(0));
+  resumed_.reset();
   const double seconds_before = seconds_;
   const int threads = std::max(std::min(max_threads_, executor.threads()), 1);
   while (!done() && !cancellation.cancelled()) {
@@ -304,16 +279,18 @@ void PhotonMappingRendering::Advance(Executor& executor, const Cancellation& can
     };
     if (!direct_.done()) {
       advance(direct_, &PhotonMappingRendering::FindDirect);
+      if (direct_.done())
+        for (const Point& point : points_) chain_rays_ += point.chain_rays;
     } else if (!tracer_) {
       end_reason_ = EndReason::kSamplesDone;
     } else if (!pass_.trace.done()) {
-      advance(pass_.trace, &PhotonMappingRendering::TraceChunks);
+      pass_.trace.Advance(*tracer_, executor, threads, cancellation, clock, left);
       if (pass_.trace.done()) MakeMaps(executor, threads);
     } else {
       advance(pass_.look, &PhotonMappingRendering::LookUp);
       if (pass_.look.done()) EndPass(clock.Now());
     }
-    const Clock::Time now = clock.Now();
+    const Clock::Time now = now_ = clock.Now();
     seconds_ = seconds_before + Seconds(now - begin).count();
     if (!done() && photons_done_ > 0 && settings_.time_limit && Seconds(now - *start_).count() >= *settings_.time_limit)
       end_reason_ = EndReason::kTimeLimit;
@@ -324,14 +301,16 @@ void PhotonMappingRendering::Advance(Executor& executor, const Cancellation& can
 void PhotonMappingRendering::EndPass(Clock::Time now) {
   for (std::size_t point = 0; point < points_.size(); ++point) {
     for (std::size_t r = 0; r < kReplicates; ++r) {
-      const auto paths = static_cast<double>(PathsOf(r, pass_.end) - PathsOf(r, pass_.first));
+      const auto paths = static_cast<double>(PhotonTrace::PathsOf(r, pass_.trace.end()) -
+                                             PhotonTrace::PathsOf(r, pass_.trace.first()));
       for (std::size_t i = Index(point, r, 0); i < Index(point, r, 0) + quantities_ * channels_; ++i)
         sums_[i] += paths * next_[i];
     }
     points_[point].step = points_[point].next_step;
     rays_ += cast_[point];
   }
-  photons_done_ = pass_.end;
+  pass_rays_ = 0;
+  photons_done_ = pass_.trace.end();
   gathered_rays_ += static_cast<double>(pass_.rays) * kReplicates;
   DecideEnd(now);
   if (!done()) BeginPass();
@@ -350,148 +329,33 @@ void PhotonMappingRendering::DecideEnd(Clock::Time now) {
   }
 }
 
-PhotonMappingRendering::Value PhotonMappingRendering::ValueAt(std::size_t number) const {
-  const Point& point = points_[number];
-  Value value;
-  value.value = {point.direct.irradiance, {}, point.direct.gradient, {}};
-  value.error = {point.direct.irradiance_error, {}, point.direct.gradient_error, {}};
-  if (photons_done_ == 0) return value;
-  if (chooses_widths_) {
-    AddDensity(number, value);
-    return value;
-  }
-  for (std::size_t q = 0; q < quantities_; ++q) {
-    for (std::size_t c = 0; c < channels_; ++c) {
-      const auto channel = static_cast<int>(c);
-      double step = 0;
-      if (q == kIrradiance) {
-        step = point.step * light_->sources().flux()[channel] * kReplicates / static_cast<double>(photons_done_);
-        if (gathers_) step = std::max(step, 2 * brightest_ * kReplicates / gathered_rays_);
-      }
-      const MeanEstimate mean = MeanOf(number, q, c, step);
-      value.value[q][channel] += mean.mean;
-      value.error[q][channel] += mean.StandardError();
-    }
-  }
-  // A kernel that corrects for the ends of a curve may be negative.
-  for (double& irradiance : value.value[kIrradiance].value) irradiance = std::max(irradiance, 0.0);
-  return value;
+template <class Self, class Stream>
+void PhotonMappingRendering::State(Self& self, Stream& stream) {
+  stream.Filled(self.sums_);
+  stream.Filled(self.points_);
+  stream(self.photons_done_, self.gathered_rays_, self.worst_error_, self.seconds_);
 }
 
-MeanEstimate PhotonMappingRendering::MeanOf(std::size_t point, std::size_t quantity, std::size_t channel,
-                                            double step) const {
-  std::array<double, kReplicates> values;
-  for (std::size_t r = 0; r < kReplicates; ++r)
-    values[r] = sums_[Index(point, r, quantity) + channel] / static_cast<double>(PathsOf(r, photons_done_));
-  return EstimateMean(values, step);
+std::string PhotonMappingRendering::Checkpoint(std::size_t most_bytes) const {
+  if (!tracer_ || done() || photons_done_ == 0) return {};
+  if (photons_done_ == resumed_photons_ && !resumed_) return {};
+  StateWriter writer(most_bytes);
+  writer(resumed_ ? *resumed_ : (now_ - *start_).count(), rays_ - pass_rays_);
+  State(*this, writer);
+  return writer.Take();
 }
 
-void PhotonMappingRendering::AddDensity(std::size_t number, Value& value) const {
-  WidthLadder ladder;
-  ladder.widest = points_[number].widest;
-  const Spectrum& flux = light_->sources().flux();
-  const auto photons = static_cast<double>(photons_done_);
-  // By all channels together.
-  for (std::size_t c = 0; c < channels_; ++c) ladder.photon += flux[static_cast<int>(c)] / photons;
-  ladder.densities.resize(quantities_);
-  for (std::size_t j = 0; j < quantities_; ++j) {
-    for (std::size_t r = 0; r < kReplicates; ++r) {
-      for (std::size_t c = 0; c < channels_; ++c)
-        ladder.densities[j][r] += sums_[Index(number, r, j) + c] / static_cast<double>(PathsOf(r, photons_done_));
-    }
-  }
-  const WidthChoice choice = ChooseWidth(ladder);
-  double width = ladder.widest;
-  for (std::size_t j = 0; j < choice.chosen; ++j) width /= WidthLadder::kRatio;
-  double all = 0;
-  for (std::size_t c = 0; c < channels_; ++c) {
-    const auto channel = static_cast<int>(c);
-    const double step = kReplicates * flux[channel] / (2 * width * photons);
-    const MeanEstimate mean = MeanOf(number, choice.chosen, c, step);
-    value.value[kIrradiance][channel] = std::max(mean.mean, 0.0);
-    value.error[kIrradiance][channel] = mean.StandardError();
-    all += std::abs(mean.mean);
-  }
-  // Shared out as the light is.
-  for (int c = 0; c < static_cast<int>(channels_); ++c)
-    value.value[kBias][c] =
-        all > 0 ? choice.bias * value.value[kIrradiance][c] / all : choice.bias / static_cast<double>(channels_);
-}
-
-double PhotonMappingRendering::WorstError() const {
-  std::vector<Spectrum> means(scene_->probes().size());
-  std::vector<Value> values;
-  for (std::size_t point = 0; point < points_.size(); ++point) {
-    values.push_back(ValueAt(point));
-    const std::size_t probe = probe_of_point_[point];
-    const double share = 1 / static_cast<double>(scene_->probes()[probe].receivers.size());
-    means[probe] = means[probe] + share * values.back().value[kIrradiance];
-  }
-  double worst = 0;
-  for (std::size_t point = 0; point < points_.size(); ++point) {
-    for (int c = 0; c < static_cast<int>(channels_); ++c) {
-      const double error = values[point].error[kIrradiance][c] + std::abs(values[point].value[kBias][c]);
-      worst = std::max(worst, RelativeError(values[point].value[kIrradiance][c], error,
-                                            kDarkest * means[probe_of_point_[point]][c]));
-    }
-  }
-  return worst;
-}
-
-RenderProgress PhotonMappingRendering::Progress() const {
-  RenderProgress progress;
-  progress.rays = rays_;
-  progress.samples = gathered_rays_;
-  progress.relative_error = worst_error_;
-  if (done()) {
-    progress.fraction = 1;
-    return progress;
-  }
-  if (settings_.photons && tracer_) {
-    const double within = 0.5 * (pass_.trace.fraction() + (pass_.trace.done() ? pass_.look.fraction() : 0));
-    const auto pass = static_cast<double>(pass_.end - pass_.first);
-    progress.fraction =
-        std::min(0.999, (static_cast<double>(photons_done_) + within * pass) / static_cast<double>(*settings_.photons));
-  }
-  if (settings_.time_limit)
-    progress.fraction = std::max(progress.fraction, std::min(seconds_ / *settings_.time_limit, 1.0));
-  if (progress.fraction > 0) progress.remaining_seconds = seconds_ * (1 - progress.fraction) / progress.fraction;
-  return progress;
-}
-
-std::shared_ptr<const Field> PhotonMappingRendering::Snapshot() const {
-  auto field = std::make_shared<Field>();
-  field->rays = rays_;
-  field->photons = static_cast<double>(photons_done_);
-  const WorldUnits units(scene_->frame());
-  // Nothing is known yet.
-  const bool known = done() || photons_done_ > 0;
-  std::size_t number = 0;
-  for (const Probe& probe : scene_->probes()) {
-    ProbeField& values = field->probes.emplace_back();
-    for (std::size_t i = 0; known && i < probe.receivers.size(); ++i, ++number) {
-      const Value value = ValueAt(number);
-      if (gathers_) values.samples.push_back(gathered_rays_);
-      for (int c = 0; c < static_cast<int>(channels_); ++c) {
-        const double irradiance = value.value[kIrradiance][c];
-        // Rays meet the arcs that follow Béziers: where there is hardly any noise, that counts.
-        const double followed = scene_->bezier_distance() * irradiance;
-        values.irradiance.push_back(units.irradiance * irradiance);
-        values.standard_error.push_back(units.irradiance * (value.error[kIrradiance][c] + followed));
-        values.estimated_bias.push_back(units.irradiance * std::abs(value.value[kBias][c]));
-        if (derivatives_ > 0) {
-          values.gradient.push_back(units.gradient * value.value[kGradient][c]);
-          values.gradient_error.push_back(units.gradient *
-                                          (value.error[kGradient][c] + std::abs(value.value[kGradientBias][c])));
-        }
-        if (derivatives_ > 1) {
-          values.hessian.push_back(units.hessian * points_[number].direct.hessian[c]);
-          values.hessian_error.push_back(units.hessian * points_[number].direct.hessian_error[c]);
-        }
-      }
-    }
-  }
-  return field;
+bool PhotonMappingRendering::Resume(std::string_view checkpoint) {
+  if (!tracer_) return false;
+  StateReader reader(checkpoint);
+  reader(resumed_.emplace(), rays_);
+  State(*this, reader);
+  const std::uint64_t all = settings_.photons ? std::max<std::uint64_t>(*settings_.photons, kReplicates) : kMostPhotons;
+  reader.Require(photons_done_ > 0 && photons_done_ < all);
+  if (!reader.AtEnd()) return false;
+  resumed_photons_ = photons_done_;
+  BeginPass();
+  return true;
 }
 
 }  // namespace flatlight

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/plane/exact/exact.h"
@@ -20,6 +22,7 @@
 #include "core/plane/ray_tracing/ray_tree.h"
 #include "core/render/idle_pool.h"
 #include "core/render/ordered_work.h"
+#include "core/render/photon_trace.h"
 #include "core/render/rendering.h"
 #include "core/statistics/replicates.h"
 
@@ -40,6 +43,9 @@ class PhotonMappingRendering final : public Rendering {
   EndReason end_reason() const override { return *end_reason_; }
   RenderProgress Progress() const override;
   std::shared_ptr<const Field> Snapshot() const override;
+  // Of whole passes; none before there is another one.
+  std::string Checkpoint(std::size_t most_bytes) const override;
+  bool Resume(std::string_view checkpoint) override;
 
   // Photons of a pass, all replicates together, at most.
   static constexpr std::uint64_t kMostPassPhotons = std::uint64_t{1} << 18;
@@ -52,23 +58,20 @@ class PhotonMappingRendering final : public Rendering {
 
   struct Point {
     const Receiver* receiver = nullptr;
-    SidePlace place;       // Of meaning where it lies on a curve.
-    ExactValue direct;     // Beside what photons tell.
-    double widest = 0;     // Of its densities.
-    double step = 0;       // What all replicates may have missed alike, for a path of unit flux: per length.
-    double next_step = 0;  // Of the pass under way.
-  };
-  // Photons of one path number after another.
-  struct Chunk {
-    std::vector<Photon> on_reflectors, on_probes;
-    double rays = 0;
+    SidePlace place;        // Of meaning where it lies on a curve.
+    ExactValue direct;      // Beside what photons tell.
+    double chain_rays = 0;  // Cast for that.
+    double widest = 0;      // Of its densities.
+    double step = 0;        // What all replicates may have missed alike, for a path of unit flux: per length.
+    double next_step = 0;   // Of the pass under way.
+    template <class Self, class Stream>
+    static void State(Self& self, Stream& stream) {
+      stream(self.widest, self.step);
+    }
   };
   struct Pass {
-    std::uint64_t first = 0;  // Photons of all replicates before it,
-    std::uint64_t end = 0;    // and with it.
-    std::uint32_t rays = 0;   // Of a replicate's gather.
-    OrderedWork trace{0};
-    std::vector<Chunk> chunks;  // By number, then replicate.
+    std::uint32_t rays = 0;  // Of a replicate's gather.
+    PhotonTrace trace;
     std::unique_ptr<const PhotonMaps> reflectors, probes;
     std::vector<MapIrradiance> known;  // By replicate, then those of bias.
     std::vector<RayTree> trees;        // Likewise.
@@ -78,16 +81,17 @@ class PhotonMappingRendering final : public Rendering {
     std::array<Spectrum, kQuantities> value, error;
   };
 
-  static std::uint64_t PathsOf(std::size_t replicate, std::uint64_t photons);
-  PhotonPurpose PurposeOf() const;
   bool OpenEnded() const { return settings_.target_error || settings_.time_limit || !settings_.photons; }
   void BeginPass();
+  void AddChained(const Receiver& receiver, const std::vector<ChainedLight>& ways, Spectrum& irradiance,
+                  Spectrum& gradient) const;
   bool FindDirect(std::size_t first, std::size_t last, const Cancellation& cancellation);
-  bool TraceChunks(std::size_t first, std::size_t last, const Cancellation& cancellation);
   void MakeMaps(Executor& executor, int threads);
   bool LookUp(std::size_t first, std::size_t last, const Cancellation& cancellation);
   bool LookUpAt(std::size_t point, std::size_t replicate, const Cancellation& cancellation);
   void EndPass(Clock::Time now);
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream);
   void DecideEnd(Clock::Time now);
   // Where a replicate's sum of a quantity of a point begins: channel after channel.
   std::size_t Index(std::size_t point, std::size_t replicate, std::size_t quantity) const {
@@ -105,7 +109,6 @@ class PhotonMappingRendering final : public Rendering {
   bool chooses_widths_ = false;  // Quantities of a point are its densities with several widths.
   int derivatives_;
   bool reflects_ = false;  // There is more than direct light.
-  bool hidden_ = false;    // Photons tell points what no gather finds.
   double brightest_ = 0;   // Radiance that rays may find by mirrors and glass, or gloss.
   std::size_t channels_;
   std::size_t quantities_;
@@ -133,6 +136,11 @@ class PhotonMappingRendering final : public Rendering {
   double rays_ = 0;
   std::optional<Clock::Time> start_;
   double seconds_ = 0;
+  double chain_rays_ = 0;                        // Beside these: for light of chains.
+  double pass_rays_ = 0;                         // Of `rays_`: of the pass under way.
+  std::uint64_t resumed_photons_ = 0;            // Of whole passes, that were done when this was resumed.
+  std::optional<Clock::Duration::rep> resumed_;  // The time that it had taken; set until it goes on.
+  Clock::Time now_;                              // When it last worked.
   std::optional<EndReason> end_reason_;
 };
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <sstream>
 
 #include "core/render/light_paths.h"
+#include "core/render/plan_text.h"
 
 namespace flatlight {
 namespace {
@@ -14,13 +14,6 @@ namespace {
 // Of a final gather, whose rays end where they arrive.
 constexpr std::uint32_t kDefaultLookups = 256;
 constexpr std::uint32_t kDefaultPhotons = 1 << 16;
-
-template <typename T>
-std::string Text(const T& value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
 
 // Whether photon mapping adds a gather of rays; a default has its say.
 bool Gathers(const Scene& scene, const Settings& settings) {
@@ -59,7 +52,8 @@ void CheckPhotonMapping(const Scene& scene, const Settings& settings, Diagnostic
             ? "does not apply: without reflection a final gather takes all light in closed form, "
               "and needs no photons; leave this out, or set final gather to false"
             : "applies to photon-mapping alone: leave this out, or use that";
-    if (settings.photons) diagnostics.Add("settings.photons", reason);
+    // Irradiance caching may have them too, see CheckCaching.
+    if (settings.photons && settings.method != Method::kIrradianceCaching) diagnostics.Add("settings.photons", reason);
     if (settings.bandwidth) diagnostics.Add("settings.bandwidth", reason);
     if (settings.neighbours) diagnostics.Add("settings.neighbours", reason);
     if (settings.kernel) diagnostics.Add("settings.kernel", reason);
@@ -86,20 +80,6 @@ void CheckPhotonMapping(const Scene& scene, const Settings& settings, Diagnostic
     }
     return;
   }
-  if (!HasChainedLight(scene)) return;
-  if (off) {
-    diagnostics.Add("settings.method",
-                    "photon-mapping finds the light that plane.lights send over mirrors and glass "
-                    "on curves alone, and probe \"" +
-                        *off +
-                        "\" has points that lie on none: give the light a surface, a small "
-                        "arc that emits");
-  }
-  if (settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone) {
-    diagnostics.Add("settings.derivatives",
-                    "photon-mapping gives none of the light that plane.lights send over mirrors and glass: leave this "
-                    "out, or give the light a surface, a small arc that emits");
-  }
 }
 
 void FillPhotonDefaults(const Scene& scene, Settings& settings) {
@@ -107,8 +87,9 @@ void FillPhotonDefaults(const Scene& scene, Settings& settings) {
   settings.final_gather = Gathers(scene, settings);
   const bool direct = DirectLightOnly(scene, settings);
   if (!settings.derivatives) {
-    const bool some = *settings.final_gather && (direct || !HasChainedLight(scene));
-    settings.derivatives = !some ? Derivatives::kNone : direct ? Derivatives::kHessian : Derivatives::kGradient;
+    settings.derivatives = !*settings.final_gather ? Derivatives::kNone
+                           : direct                ? Derivatives::kHessian
+                                                   : Derivatives::kGradient;
   }
   if (*settings.final_gather && direct) return;
   if (!settings.photons && !open_ended) settings.photons = kDefaultPhotons;

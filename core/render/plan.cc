@@ -7,9 +7,12 @@
 #include <string>
 #include <variant>
 
-#include "core/plane/ray_tracing/ray_tree.h"
+#include "core/render/caching_plan.h"
 #include "core/render/light_paths.h"
+#include "core/render/panel_plan.h"
 #include "core/render/photon_plan.h"
+#include "core/render/plan_passes.h"
+#include "core/render/plan_text.h"
 #include "core/render/skips.h"
 
 namespace flatlight {
@@ -18,23 +21,9 @@ namespace {
 constexpr std::uint32_t kDefaultSamples = 1024;
 // Of ray tracing, whose rays branch.
 constexpr std::uint32_t kDefaultFirstRays = 256;
-// Of a cache record, whose rays branch.
-constexpr std::uint32_t kDefaultGatherRays = 1024;
-constexpr double kDefaultTolerance = 0.01;
 // Of a pixel: a path goes through hundreds of them.
 constexpr std::uint32_t kDefaultPictureSamples = 8;
 constexpr double kReferenceError = 1e-6;
-// Of straight and arced pieces: everything that a panel may see is kept, some 100 kB a piece.
-constexpr std::size_t kMostReferencePieces = 2048;
-// Paths of a block: samples come in whole ones.
-constexpr double kBlockSamples = 16;
-
-template <typename T>
-std::string Text(const T& value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
 
 std::string Listed(const std::vector<std::string>& names) {
   std::string text;
@@ -91,68 +80,6 @@ void CheckDerivatives(const Scene& scene, const Settings& settings, Diagnostics&
     diagnostics.Add("settings.formulation", "applies to ray-tracing alone: leave this out, or use that");
   } else if (none) {
     diagnostics.Add("settings.formulation", "says how derivatives are found, but derivatives none asks for none");
-  }
-}
-
-// Whether panels can tell the light of a scene. `path`: of the setting that asks for them; `other`: what to use else.
-void CheckPanels(const Scene& scene, bool reflects, const std::string& path, const std::string& other,
-                 Diagnostics& diagnostics) {
-  if (reflects && !scene.traits().lambertian) {
-    const auto curve = std::find_if(scene.curves().begin(), scene.curves().end(), [](const Curve& c) {
-      return !std::holds_alternative<Lambertian>(c.material) && !c.reflectance.IsBlack();
-    });
-    diagnostics.Add(path, "reference needs a scene that reflects by lambertian materials alone, and curve \"" +
-                              curve->name + "\" has another: use " + other);
-  }
-  if (scene.traits().elements > kMostReferencePieces) {
-    diagnostics.Add(path, "reference does scenes of up to " + Text(kMostReferencePieces) +
-                              " straight and arced pieces, and this one has " + Text(scene.traits().elements) +
-                              ": use " + other);
-  }
-}
-
-// Settings of irradiance caching, and those that it has no use for.
-void CheckCaching(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
-  if (settings.method != Method::kIrradianceCaching) {
-    const std::string reason = "applies to irradiance-caching alone: leave this out, or use that";
-    if (settings.error_control) diagnostics.Add("settings.errorControl", reason);
-    if (settings.extrapolation) diagnostics.Add("settings.extrapolation", reason);
-    if (settings.tolerance) diagnostics.Add("settings.tolerance", reason);
-    if (settings.max_records) diagnostics.Add("settings.maxRecords", reason);
-    if (settings.gather) diagnostics.Add("settings.gather", reason);
-    if (settings.neighbour_clamping) diagnostics.Add("settings.neighbourClamping", reason);
-    if (settings.overture) diagnostics.Add("settings.overture", reason);
-    return;
-  }
-  if (settings.extrapolation > 2u)
-    diagnostics.Add("settings.extrapolation", "is " + Text(*settings.extrapolation) + ", must be 0, 1 or 2");
-  if (settings.tolerance && !(*settings.tolerance > 0 && *settings.tolerance <= 1))
-    diagnostics.Add("settings.tolerance", "is " + Text(*settings.tolerance) + ", must be in (0, 1]");
-  if (settings.max_records == 0u) diagnostics.Add("settings.maxRecords", "is 0, must be at least 1");
-  if (settings.tolerance && settings.max_records) {
-    diagnostics.Add("settings.maxRecords",
-                    "is given together with a tolerance: one decides where records go, leave the other out");
-  }
-  if (settings.overture && settings.max_records) {
-    diagnostics.Add("settings.overture", "places records for less than the tolerance, and max records leaves that out");
-  }
-  if (settings.gather == Gather::kReference && settings.samples) {
-    diagnostics.Add("settings.samples",
-                    "does not apply where records gather from the reference, which draws no samples");
-  }
-  if (settings.gather == Gather::kReference && !DirectLightOnly(scene, settings)) {
-    CheckPanels(scene, true, "settings.gather", "from-ray-tracing", diagnostics);
-    if (scene.traits().has_beziers) {
-      diagnostics.Add("settings.gather",
-                      "reference gives no derivatives of light reflected in a scene with Bézier curves: use "
-                      "from-ray-tracing");
-    }
-  }
-  if (settings.target_error) {
-    diagnostics.Add("settings.targetError", "does not apply to irradiance-caching: use tolerance or max records");
-  }
-  if (settings.time_limit) {
-    diagnostics.Add("settings.timeLimit", "does not apply to irradiance-caching: use tolerance or max records");
   }
 }
 
@@ -243,15 +170,8 @@ void FillMethodDefaults(const Scene& scene, Plan& plan) {
     return;
   }
   if (settings.method == Method::kIrradianceCaching) {
-    settings.derivatives = Derivatives::kNone;
-    if (!settings.error_control) settings.error_control = ErrorControl::kVisibilityEvents;
-    if (!settings.extrapolation) settings.extrapolation = 2;
-    if (!settings.tolerance && !settings.max_records) settings.tolerance = kDefaultTolerance;
+    FillCachingDefaults(scene, settings);
     if (DirectLightOnly(scene, settings)) return;
-    const SceneTraits& traits = scene.traits();
-    const bool panels = traits.lambertian && !traits.has_beziers && traits.elements <= kMostReferencePieces;
-    if (!settings.gather) settings.gather = panels && !settings.samples ? Gather::kReference : Gather::kRayTracing;
-    if (settings.gather == Gather::kRayTracing && !settings.samples) settings.samples = kDefaultGatherRays;
   }
   if (!settings.seed.has_value()) settings.seed = 0;
   if (settings.method == Method::kIrradianceCaching) return;
@@ -277,25 +197,6 @@ void FillMethodDefaults(const Scene& scene, Plan& plan) {
   }
 }
 
-// Over all curves, weighed by length.
-double MeanReflectance(const Scene& scene) {
-  double length = 0;
-  double reflected = 0;
-  for (const Curve& curve : scene.curves()) {
-    length += curve.length;
-    reflected += curve.length * curve.reflectance.Max();
-  }
-  return length > 0 ? reflected / length : 0;
-}
-
-// Vertices of a path if all curves reflect as the average one does.
-double ExpectedVertices(const Scene& scene, const Plan& plan) {
-  const double most = plan.Takes(skip::kBounces) ? 0 : plan.settings.max_bounces.value_or(1e9);
-  const double reflectance = MeanReflectance(scene);
-  if (reflectance == 1) return std::min(most + 1, 1e6);
-  return (1 - std::pow(reflectance, most + 1)) / (1 - reflectance);
-}
-
 // A triangulation is made in 1 to 4 us an element, and saves 3 to 170 us a point, both growing with the scene (./run
 // bench exact_light): from 0.3 times as many points as elements on it pays, with another thread from twice that. With
 // more elements a job would be deaf for seconds.
@@ -305,88 +206,6 @@ bool TrianglesPay(const Scene& scene, const Plan& plan) {
   return plan.settings.method == Method::kExact && !plan.Takes(skip::kEmission) && !plan.Takes(skip::kVisibility) &&
          (traits.emitting_curves > 0 || traits.environment) && !traits.has_arcs && traits.elements <= kMostElements &&
          2 * (traits.probe_points + traits.pixels) >= traits.elements;
-}
-
-// Rays of the tree behind one of `samples` rays of the first level.
-double ExpectedTree(const Scene& scene, const Plan& plan, double samples) {
-  const double most = plan.Takes(skip::kBounces) ? 0 : plan.settings.max_bounces.value_or(64);
-  auto branches = static_cast<std::uint32_t>(samples / kBlockSamples);
-  double rays = 1, level = 1;
-  for (double depth = 0; depth < most && depth < 64; ++depth) {
-    branches = RayTree::Branches(branches);
-    level *= branches > 1 ? branches : MeanReflectance(scene);
-    rays += level;
-  }
-  return rays;
-}
-
-void AddPhotonPasses(const Scene& scene, Plan& plan) {
-  const Settings& settings = plan.settings;
-  const bool gathers = *settings.final_gather, direct = DirectLightOnly(scene, settings);
-  PlanPass points;
-  points.points = static_cast<double>(scene.traits().probe_points);
-  if (gathers && direct) {
-    points.name = "direct light in closed form";
-    plan.passes.push_back(points);
-    return;
-  }
-  PlanPass photons;
-  photons.name = (settings.photons ? Text(*settings.photons) + " " : "") +
-                 "photons from where light shines, sorted along the curves on which they arrive";
-  if (!plan.Takes(skip::kEmission))
-    photons.expected_rays = settings.photons.value_or(0) * ExpectedVertices(scene, plan);
-  plan.passes.push_back(photons);
-  points.name = gathers ? "direct light in closed form, and rays that look up densities of photons where they arrive"
-                        : "densities of photons at the points";
-  if (gathers) {
-    points.samples = settings.photons ? std::ceil(*settings.samples / kBlockSamples) * kBlockSamples : 0;
-    // A quarter more tells the bias.
-    if (!plan.Takes(skip::kEmission)) points.expected_rays = 1.25 * points.points * points.samples;
-  }
-  plan.passes.push_back(points);
-}
-
-void AddPasses(const Scene& scene, Plan& plan) {
-  if (plan.settings.method == Method::kPhotonMapping) return AddPhotonPasses(scene, plan);
-  PlanPass pass;
-  pass.points = static_cast<double>(scene.traits().probe_points);
-  if (plan.settings.method == Method::kExact) {
-    pass.name = plan.triangles ? "direct light in closed form, through triangles where they can be made"
-                               : "direct light in closed form";
-  } else if (plan.settings.method == Method::kReference) {
-    pass.name = "light between panels, refined until its error is small";
-  } else if (plan.settings.method == Method::kIrradianceCaching) {
-    pass.name = "records where points need them, and interpolation between them";
-    const double rays = plan.settings.samples.value_or(0);
-    if (plan.settings.max_records && !plan.Takes(skip::kEmission) && !plan.Takes(skip::kBounces))
-      pass.expected_rays = *plan.settings.max_records * rays * ExpectedTree(scene, plan, rays);
-  } else {
-    const bool branching = plan.settings.method == Method::kRayTracing;
-    pass.name = branching ? "branching rays from the points" : "paths from the points";
-    if (plan.settings.samples.has_value())
-      pass.samples = std::ceil(*plan.settings.samples / kBlockSamples) * kBlockSamples;
-    const double rays_per_vertex = plan.Takes(skip::kVisibility) ? 1 : 2;
-    if (!plan.Takes(skip::kEmission)) {
-      pass.expected_rays =
-          pass.points * pass.samples *
-          (branching ? ExpectedTree(scene, plan, pass.samples) : rays_per_vertex * ExpectedVertices(scene, plan));
-    }
-  }
-  if (pass.points > 0 || scene.traits().pixels == 0) plan.passes.push_back(pass);
-  if (scene.traits().pixels == 0) return;
-  PlanPass pictures;
-  pictures.points = static_cast<double>(scene.traits().pixels);
-  if (plan.settings.method == Method::kExact) {
-    pictures.name = "fluence in closed form in the middle of each pixel, and all over those where it bends";
-    plan.passes.push_back(pictures);
-    return;
-  }
-  pictures.name = "light followed through the pictures";
-  pictures.samples = plan.picture_samples.value_or(0);
-  if (!plan.Takes(skip::kEmission)) {
-    pictures.expected_rays = pictures.points * pictures.samples * ExpectedVertices(scene, plan);
-  }
-  plan.passes.push_back(pictures);
 }
 
 std::string Bounces(const Plan& plan) {
@@ -417,12 +236,7 @@ std::string Summary(const Scene& scene, const Plan& plan) {
   if (pixels > 0) text += (points > 0 ? " and in " : "") + std::to_string(pixels) + " pixels";
   if (plan.settings.method == Method::kPhotonMapping) return text + HowPhotonsTell(scene, plan.settings) + ".";
   if (plan.settings.method == Method::kIrradianceCaching) {
-    text +=
-        plan.settings.max_records
-            ? ", from " + Text(*plan.settings.max_records) + (*plan.settings.max_records == 1 ? " record" : " records")
-            : ", from as many records as keep the estimated error below " + Text(100 * *plan.settings.tolerance) + " %";
-    if (plan.settings.samples && !plan.Takes(skip::kBounces))
-      text += ", " + Text(*plan.settings.samples) + " branching rays each";
+    text += HowRecordsTell(plan.settings, plan.Takes(skip::kBounces));
   } else if (plan.settings.method != Method::kExact) {
     const bool branching = plan.settings.method == Method::kRayTracing;
     if (plan.settings.samples.has_value()) {

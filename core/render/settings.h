@@ -20,7 +20,7 @@ enum class Derivatives : std::uint8_t { kNone, kGradient, kHessian };
 enum class Formulation : std::uint8_t { kStratified, kPolyline, kArcLength };
 
 // Where irradiance caching finds what is reflected.
-enum class Gather : std::uint8_t { kReference, kRayTracing };
+enum class Gather : std::uint8_t { kReference, kRayTracing, kPhotonMap };
 
 struct Settings {
   std::optional<Method> method;

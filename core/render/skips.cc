@@ -133,7 +133,7 @@ std::vector<SkipEntry> DecideSkips(const Scene& scene, const Settings& settings)
   }
   const LightWays ways(scene, direct);
   if (branching) {
-    const bool rays = !caching || settings.gather == Gather::kRayTracing;
+    const bool rays = !caching || (settings.gather && settings.gather != Gather::kReference);
     const std::string reason = rays ? "branching rays find what they meet: no shadow tests, no emitters chosen"
                                     : "records find all that they see, in the order of its directions";
     decisions.Add(skip::kVisibility, false, "", reason);

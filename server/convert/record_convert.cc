@@ -85,7 +85,8 @@ v1::RecordsSeal SealOf(const std::string& world_hash, const Settings& settings, 
   Settings gather;
   gather.max_bounces = settings.max_bounces;
   gather.gather = settings.gather;
-  if (settings.gather == Gather::kRayTracing) gather.samples = settings.samples, gather.seed = settings.seed;
+  if (settings.gather && settings.gather != Gather::kReference)
+    gather.samples = settings.samples, gather.seed = settings.seed, gather.photons = settings.photons;
   *seal.mutable_gather() = SettingsToProto(gather);
   Sha256 hash;
   hash.Add(seal.SerializeAsString());
@@ -117,6 +118,9 @@ std::string WhyNotOf(const v1::RecordsSeal& seal, const v1::RecordsSeal& job) {
   if (theirs.has_samples() != ours.has_samples() || theirs.samples() != ours.samples())
     return differ("samples", text(theirs.has_samples(), theirs.samples(), "none"),
                   text(ours.has_samples(), ours.samples(), "none"));
+  if (theirs.has_photons() != ours.has_photons() || theirs.photons() != ours.photons())
+    return differ("photons", text(theirs.has_photons(), theirs.photons(), "none"),
+                  text(ours.has_photons(), ours.photons(), "none"));
   if (theirs.seed() != ours.seed()) return differ("seed", std::to_string(theirs.seed()), std::to_string(ours.seed()));
   return "";
 }

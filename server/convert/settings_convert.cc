@@ -76,6 +76,8 @@ v1::Settings::Gather ToProto(Gather gather) {
       return v1::Settings::FROM_REFERENCE;
     case Gather::kRayTracing:
       return v1::Settings::FROM_RAY_TRACING;
+    case Gather::kPhotonMap:
+      return v1::Settings::FROM_PHOTON_MAP;
   }
   return v1::Settings::GATHER_UNSPECIFIED;
 }
@@ -130,6 +132,7 @@ Settings SettingsFromProto(const v1::Settings& proto, Diagnostics& diagnostics) 
   if (proto.method() == v1::Settings::PHOTON_MAPPING) settings.method = Method::kPhotonMapping;
   if (proto.gather() == v1::Settings::FROM_REFERENCE) settings.gather = Gather::kReference;
   if (proto.gather() == v1::Settings::FROM_RAY_TRACING) settings.gather = Gather::kRayTracing;
+  if (proto.gather() == v1::Settings::FROM_PHOTON_MAP) settings.gather = Gather::kPhotonMap;
   settings.error_control = FromProto(proto.error_control());
   if (proto.has_extrapolation()) settings.extrapolation = proto.extrapolation();
   if (proto.has_tolerance()) settings.tolerance = proto.tolerance();

@@ -105,6 +105,9 @@ std::vector<v1::CreateJobRequest> Requests() {
       Request(R"({"scene": {"name": "scenes/penumbra"}, "settings": {"method": "EXACT", "maxBounces": 0}})"),
       Request(R"({"scene": {"name": "scenes/penumbra"}, "settings": {"method": "REFERENCE"}})"),
       Request(R"({"scene": {"name": "scenes/penumbra"}, "settings": {"method": "IRRADIANCE_CACHING"}})"),
+      Request(R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "IRRADIANCE_CACHING", )"
+              R"("gather": "FROM_PHOTON_MAP", "maxRecords": 60}})"),
+      Request(R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PHOTON_MAPPING", "photons": 200000}})"),
       Request(R"({"scene": {"name": "scenes/cornell", )" + picture +
               R"(}, "settings": {"method": "PATH_TRACING", "samples": 64}})"),
       Request(R"({"scene": {"name": "scenes/cornell", )" + picture +

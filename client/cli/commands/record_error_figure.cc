@@ -106,7 +106,7 @@ std::string Script(const std::vector<Line>& lines, PlotForm form) {
   }
   script +=
       blocks +
-      "set encoding utf8\nset logscale xy\nset xrange [3.5:75]\nset yrange [1e-8:1]\nset format y '10^{%T}'\n"
+      "set encoding utf8\nset logscale xy\nset xrange [3.5:75]\nset yrange [1e-14:1]\nset format y '10^{%T}'\n"
       "set xtics (4, 8, 16, 32, 64)\nset tics nomirror textcolor rgb '#404040'\nset border 3 linecolor rgb '#404040'\n"
       "set grid linetype 1 linecolor rgb '#e4e4e4'\nunset key\n"
       "set multiplot layout 2,3 margins 0.07,0.985,0.17,0.94 spacing 0.05,0.1\n";

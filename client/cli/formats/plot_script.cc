@@ -113,6 +113,15 @@ std::string PlotCommand(const Panel& panel) {
   return all.empty() ? "plot NaN notitle\n" : "plot " + all.substr(2) + '\n';
 }
 
+// By how many letters columns are to be wider than gnuplot thinks, which takes long names for longer than they are.
+std::string LegendWidth(const std::vector<Panel>& panels) {
+  constexpr std::size_t kShort = 4;
+  std::size_t longest = 0;
+  for (const Panel& panel : panels)
+    for (const PlotSeries& series : panel.series) longest = std::max(longest, series.title.size());
+  return longest <= kShort ? "2" : "-2";
+}
+
 std::string RangeCommand(const Panel& panel) {
   double low = 0, high = 0;
   for (const PlotSeries& series : panel.series)
@@ -151,7 +160,8 @@ std::string PlotScript(const v1::RenderResult& result, PlotForm form) {
       PlotText(result.scene().empty() ? "irradiance" : result.scene()) + ".'}' at screen 0.02, screen " + screen(24) +
       " left\n" + "set label 2 " + PlotText(Subtitle(result)) + " at screen 0.02, screen " + screen(50) +
       " left textcolor rgb '#606060'\n" + "set key at screen 0.975, screen " + screen(14) +
-      " right top horizontal Left reverse maxrows 3 samplen 1.8 spacing 1.2 width -2 textcolor rgb '#404040'\n";
+      " right top horizontal Left reverse maxrows 3 samplen 1.8 spacing 1.2 width " +
+      LegendWidth(panels) + " textcolor rgb '#404040'\n";
 
   int top = kHead;
   for (std::size_t i = 0; i < panels.size(); ++i) {
@@ -177,7 +187,7 @@ std::string PlotScript(const v1::RenderResult& result, PlotForm form) {
         "set tmargin at screen " + screen(top + kRecords) + "\nset bmargin at screen " + screen(top + records) +
         "\nset xrange [GPVAL_X_MIN:GPVAL_X_MAX]\nset xlabel 'arc length  {/:Italic s}  [m]'\nset format x '%g'\n" +
         "set format y '%s'\nset key at screen 0.975, screen " + screen(top + kRecords / 2) +
-        " right center horizontal Left reverse samplen 1.8 textcolor rgb '#404040'\n" + record_plot.commands;
+        " right center horizontal Left reverse samplen 1.8 width -2 textcolor rgb '#404040'\n" + record_plot.commands;
   }
   return script + "unset multiplot\n";
 }

@@ -74,7 +74,7 @@ void AddCaching(CLI::App& app, SettingsOptions& settings) {
                  "occlusion-hessian or visibility-events (default)")
       ->type_name("NAME");
   app.add_option("--gather", settings.gather,
-                 "what is reflected: from-reference (default where it can) or from-ray-tracing")
+                 "what is reflected: from-reference (default where it can), from-ray-tracing or from-photon-map")
       ->type_name("NAME");
   app.add_option("--extrapolation", settings.extrapolation, "degree from a record, 0 to 2 (default 2)")->type_name("N");
   app.add_option("--tolerance", settings.tolerance, "estimated relative error of irradiance-caching (default 0.01)")

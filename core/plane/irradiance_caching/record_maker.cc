@@ -18,6 +18,8 @@ namespace flatlight {
 namespace {
 
 constexpr int kDistanceRays = 64;
+// Doubt is smooth: a part of the rays tell it.
+constexpr std::uint32_t kDoubtShare = 8, kFewestDoubts = 16;
 // The fourth derivative of what rays bring is noise.
 constexpr std::size_t kKnownOfRays = 4;
 
@@ -99,6 +101,13 @@ void RecordMaker::AddReflected(const Receiver& receiver, std::uint64_t key, cons
   }
   record.surroundings.radiometric = record.surroundings.radiometric + ArcLengthDerivatives(receiver, gathered).second;
   record.noise = std::sqrt(variance.Max());
+  if (options_.doubt) {
+    // All rays may end in the same photons: their errors add up.
+    std::vector<GatheredRay> doubts;
+    GatherHemicircle(*options_.doubt, receiver, std::max(options_.rays / kDoubtShare, kFewestDoubts), ChildKey(key, 0),
+                     cancellation, doubts, cast);
+    record.noise += IrradianceOf(doubts).Max();
+  }
   // Of the order of the gradient, where something that reflects is covered or comes into sight.
   const Spectrum gradient = record.derivative[1] - direct_gradient;
   for (const double value : gradient.value) record.unknown_jump = std::max(record.unknown_jump, std::abs(value));

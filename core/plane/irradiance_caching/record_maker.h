@@ -25,6 +25,8 @@ struct RecordMakerOptions {
   std::optional<ReflectedLight> reflected;
   double reflected_error = 0;  // Of irradiance from them, relative.
   std::uint32_t rays = 0;
+  // Where those rays end in what was found before: a tree that tells what this may be off by. Null otherwise.
+  const RayTree* doubt = nullptr;
   std::uint64_t key = 0;  // Of all that is random.
 };
 

@@ -33,6 +33,8 @@ class Skyline {
   // Irradiance and its derivatives, of direct light and what is known to be reflected; exact where no visibility event
   // happens, and there those of the right side.
   std::array<Spectrum, kRecordOrders> Irradiance() const;
+  // Whether that is all there is.
+  bool knows_all() const { return reflected_ != nullptr || !reflects_; }
   // Sets `radiometric`, of the same light, `geometric` and `turning`.
   void Survey(Surroundings& surroundings) const;
   // Tells what is seen: equal as long as irradiance is a smooth function of the place.

@@ -4,28 +4,25 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "core/math/tolerances.h"
-#include "core/math/trig.h"
-#include "core/plane/intersect.h"
+#include "core/plane/walls.h"
 #include "core/scene/bezier_chain.h"
 #include "core/scene/element_frame.h"
 
 namespace flatlight {
 namespace {
 
-// Directions that differ by less are one.
-constexpr double kSameDirection = 1e-9;
-
-// Whether b goes on smoothly where a ends.
-bool GoesOn(const Scene& scene, const Element& a, const Element& b) {
-  if (a.curve != b.curve || !(a.b == b.a)) return false;
+// Whether b goes on where a ends and bends alike.
+bool BendsOn(const Scene& scene, const Element& a, const Element& b) {
+  if (!GoesOn(a, b)) return false;
   const BezierPiece *of_a = scene.bezier_piece(a), *of_b = scene.bezier_piece(b);
   const bool one_bezier = of_a && of_b && of_a->bezier == of_b->bezier;
-  const ElementFrame end = FrameAt(a, 1), begin = FrameAt(b, 0);
-  return Dot(end.tangent, begin.tangent) > 0 && std::abs(Cross(end.tangent, begin.tangent)) <= kSameDirection &&
-         (one_bezier || std::abs(end.curvature - begin.curvature) <= kSameDirection * std::abs(end.curvature));
+  const double end = FrameAt(a, 1).curvature, begin = FrameAt(b, 0).curvature;
+  return one_bezier || std::abs(end - begin) <= kSameDirection * std::abs(end);
 }
 
 // Whether a free point carries on a row that begins at `first` and has come to `last`.
@@ -38,38 +35,33 @@ bool InRow(const Scene& scene, const RayCaster& caster, const Receiver& first, c
   return caster.Visible({last.position, last.element}, {next.position, next.element});
 }
 
-// Where on an element, by the arc length of its curve, a point of it lies.
-double ArcLengthAt(const Element& element, Point2 p) {
-  return element.arc_begin + FractionAt(element, p) * element.length;
+// Whether light goes to and fro between two elements, which makes it vary without limit where they meet.
+bool Exchange(const Scene& scene, std::size_t element, ElementId other) {
+  return !scene.curve_of(static_cast<ElementId>(element)).reflectance.IsBlack() &&
+         !scene.curve_of(other).reflectance.IsBlack();
 }
 
-// Where curves stand on a run of elements, or cross it: light may jump there, and no record reaches past it.
-std::vector<double> WallsOn(const Scene& scene, std::size_t first, std::size_t last) {
-  const std::vector<Element>& elements = scene.elements();
-  const double near = 2 * scene.touch_distance();
-  std::vector<double> walls;
-  for (std::size_t i = first; i < last; ++i) {
-    const Element& e = elements[i];
-    for (std::size_t j = 0; j < elements.size(); ++j) {
-      const Element& f = elements[j];
-      const double reach = e.length + f.length + near;
-      if ((j >= first && j < last) || f.carrier == e.carrier || LengthSquared(e.a - f.a) > reach * reach) continue;
-      for (const Point2 p : {f.a, f.b})
-        if (DistanceTo(e, p) <= near) walls.push_back(ArcLengthAt(e, p));
-      for (const Point2 p : {e.a, e.b})
-        if (DistanceTo(f, p) <= near) walls.push_back(ArcLengthAt(e, p));
-      const ElementCrossings crossings = CrossElements(e, f, scene.touch_distance());
-      for (int c = 0; c < crossings.count; ++c) walls.push_back(ArcLengthAt(e, crossings.point[c]));
-    }
-  }
-  std::sort(walls.begin(), walls.end());
-  return walls;
-}
-
-// A smooth run of a curve's elements, and where walls divide it.
+// A smooth run of a curve's elements, and where walls divide it: light may jump there, and no record reaches past it.
 struct Run {
   std::size_t first = 0, last = 0;
-  std::vector<double> walls;
+  std::vector<double> walls;   // By arc length of the curve, in order; those that are nearly one are one.
+  std::vector<char> exchange;  // Which of these reflect to the run.
+
+  void AddWalls(const Scene& scene, const Walls& all) {
+    std::vector<std::pair<double, char>> found;
+    for (std::size_t e = first; e < last; ++e)
+      for (const Wall& wall : all.On(e))
+        found.emplace_back(scene.elements()[e].arc_begin + wall.at, Exchange(scene, e, wall.other));
+    std::sort(found.begin(), found.end());
+    const double near = 4 * scene.touch_distance();
+    for (const auto& [at, reflects] : found) {
+      if (walls.empty() || at - walls.back() > near) {
+        walls.push_back(at), exchange.push_back(reflects);
+      } else {
+        exchange.back() = exchange.back() || reflects;
+      }
+    }
+  }
 };
 
 }  // namespace
@@ -118,13 +110,15 @@ Tracks TracksOf(const Scene& scene, const RayCaster& caster) {
   // Where the smooth run of each element begins; the end of the list ends the last one.
   std::vector<std::size_t> begin_of(elements.size() + 1, elements.size());
   for (std::size_t e = 0; e < elements.size(); ++e)
-    begin_of[e] = e > 0 && GoesOn(scene, elements[e - 1], elements[e]) ? begin_of[e - 1] : e;
+    begin_of[e] = e > 0 && BendsOn(scene, elements[e - 1], elements[e]) ? begin_of[e - 1] : e;
   std::map<std::size_t, Run> runs;  // By first element.
+  std::optional<Walls> all_walls;
   // By run, side, and number of walls before.
   std::map<std::tuple<std::size_t, Side, std::ptrdiff_t>, std::uint32_t> parts;
   const auto add = [&](const Track& track) {
     tracks.tracks.push_back(track);
     tracks.points.emplace_back();
+    tracks.corners.emplace_back();
     return static_cast<std::uint32_t>(tracks.tracks.size() - 1);
   };
   for (const Probe& probe : scene.probes()) {
@@ -143,11 +137,17 @@ Tracks TracksOf(const Scene& scene, const RayCaster& caster) {
         if (run.last == 0) {
           run.first = first, run.last = first + 1;
           while (begin_of[run.last] == first) ++run.last;
-          run.walls = WallsOn(scene, run.first, run.last);
+          if (!all_walls) all_walls.emplace(scene);
+          run.AddWalls(scene, *all_walls);
         }
         const auto walls = std::upper_bound(run.walls.begin(), run.walls.end(), receiver.arc_length);
         const auto [part, is_new] = parts.try_emplace({first, side, walls - run.walls.begin()}, 0);
-        if (is_new) part->second = add(Track(scene, run.first, run.last, side));
+        if (is_new) {
+          part->second = add(Track(scene, run.first, run.last, side));
+          const auto next = static_cast<std::size_t>(walls - run.walls.begin());
+          tracks.corners.back() = {next > 0 && run.exchange[next - 1] != 0,
+                                   next < run.walls.size() && run.exchange[next] != 0};
+        }
         place = {part->second, receiver.arc_length};
         row = nullptr;
       } else {

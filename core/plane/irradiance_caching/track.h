@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/cache/gap.h"
 #include "core/plane/ray_caster.h"
 #include "core/scene/scene.h"
 
@@ -46,6 +47,7 @@ struct TrackPlace {
 struct Tracks {
   std::vector<Track> tracks;
   std::vector<std::vector<double>> points;  // By track, in order along it.
+  std::vector<TrackCorners> corners;        // By track.
   std::vector<TrackPlace> of_point;         // By probe point.
 };
 

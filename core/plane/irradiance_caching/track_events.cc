@@ -43,6 +43,7 @@ std::vector<VisibilityEvent> EventsBetween(Skyline& skyline, const Track& track,
       here = look(far);
       const std::array<Spectrum, kRecordOrders> beyond = skyline.Irradiance();
       for (std::size_t k = 0; k < event.jump.size(); ++k) event.jump[k] = beyond[k] - before[k];
+      if (skyline.knows_all()) event.before = before[0];
       if (!events.empty() && event.at - events.back().at <= kTogether * (to - places[i - 1])) {
         for (std::size_t k = 0; k < event.jump.size(); ++k)
           events.back().jump[k] = events.back().jump[k] + event.jump[k];

@@ -221,4 +221,25 @@ Spectrum MapIrradiance::At(const SurfacePoint& on_element, Side side, std::uint3
                                       : maps_.Density(replicate_, window, PhotonMaps::Width::kFirst, bounces);
 }
 
+Spectrum PooledIrradiance::At(const SurfacePoint& on_element, Side side, std::uint32_t bounces) const {
+  const DensityWindow window = maps_.WindowAt(maps_.stretches().Locate(on_element.element, on_element.position, side));
+  std::array<Spectrum, kReplicates> density;
+  Spectrum mean;
+  for (std::size_t r = 0; r < kReplicates; ++r) {
+    density[r] = maps_.Density(r, window, PhotonMaps::Width::kFirst, bounces);
+    mean = mean + (1.0 / kReplicates) * density[r];
+  }
+  if (quantity_ == Quantity::kIrradiance) return mean;
+  Spectrum squares, bias;
+  for (std::size_t r = 0; r < kReplicates; ++r) {
+    const Spectrum off = density[r] - mean;
+    squares = squares + off * off;
+    bias = bias + (1.0 / kReplicates) * maps_.Bias(r, window, bounces);
+  }
+  Spectrum doubt;
+  for (int c = 0; c < kMaxChannels; ++c)
+    doubt[c] = std::sqrt(squares[c] / (kReplicates * (kReplicates - 1))) + std::abs(bias[c]);
+  return doubt;
+}
+
 }  // namespace flatlight

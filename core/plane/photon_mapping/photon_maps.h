@@ -107,6 +107,20 @@ class MapIrradiance final : public KnownIrradiance {
   Quantity quantity_;
 };
 
+// What the photons of all replicates tell of irradiance together.
+class PooledIrradiance final : public KnownIrradiance {
+ public:
+  // kDoubt: what the irradiance may be off by, the standard error of the replicates and the bias without its sign.
+  enum class Quantity : std::uint8_t { kIrradiance, kDoubt };
+  PooledIrradiance(const PhotonMaps& maps, Quantity quantity) : maps_(maps), quantity_(quantity) {}
+
+  Spectrum At(const SurfacePoint& on_element, Side side, std::uint32_t bounces) const override;
+
+ private:
+  const PhotonMaps& maps_;
+  Quantity quantity_;
+};
+
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_CORE_PLANE_PHOTON_MAPPING_PHOTON_MAPS_H_

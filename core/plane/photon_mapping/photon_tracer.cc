@@ -23,8 +23,6 @@ PhotonTracer::PhotonTracer(const LightTracer& tracer, const Scene& scene, const 
 
 double PhotonTracer::Trace(const SampleStream& stream, std::uint32_t index, std::vector<Photon>& on_reflectors,
                            std::vector<Photon>& on_probes) const {
-  // Of a light that no ray finds, and over nothing but mirrors and glass.
-  bool hidden = false;
   return tracer_.Follow(stream, index, [&](const LightStep& step) {
     if (!step.hit) return;
     const CurveId id = scene_.element(step.hit->element).curve;
@@ -33,20 +31,13 @@ double PhotonTracer::Trace(const SampleStream& stream, std::uint32_t index, std:
     // What reflects adds a bounce.
     const bool on_reflector =
         purpose_.reflectors && diffuse && !curve.reflectance.IsBlack() && step.depth < most_bounces_;
-    const bool on_probe = has_probe_[static_cast<std::size_t>(id)] != 0 &&
-                          (purpose_.probes == PhotonPurpose::OnProbes::kAll ||
-                           (purpose_.probes == PhotonPurpose::OnProbes::kHidden && hidden));
+    const bool on_probe = purpose_.probes && has_probe_[static_cast<std::size_t>(id)] != 0;
     if (on_reflector || on_probe) {
       const Side side = Dot(step.hit->normal, step.direction) < 0 ? Side::kFront : Side::kBack;
       const SidePlace place = stretches_.Locate(step.hit->element, step.hit->position, side);
       const Photon photon{place.side, place.at, step.flux, step.depth};
       if (on_reflector) on_reflectors.push_back(photon);
       if (on_probe) on_probes.push_back(photon);
-    }
-    if (step.depth == 0) {
-      hidden = !step.emitted.has_surface && IsSpecular(curve.material);
-    } else if (!IsSpecular(curve.material)) {
-      hidden = false;
     }
   });
 }

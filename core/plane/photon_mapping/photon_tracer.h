@@ -25,9 +25,8 @@ struct Photon {
 struct PhotonPurpose {
   // Irradiance of what reflects diffusely, for rays that look for it there.
   bool reflectors = false;
-  // Irradiance on the curves with points: all of it, or what no ray from a point finds, of lights without a surface
-  // over mirrors and glass.
-  enum class OnProbes : std::uint8_t { kNone, kAll, kHidden } probes = OnProbes::kNone;
+  // Irradiance on the curves with points.
+  bool probes = false;
 };
 
 // Traces photons, and keeps those that are wanted.

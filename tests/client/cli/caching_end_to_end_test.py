@@ -99,6 +99,16 @@ class CachingEndToEnd(CliCase):
             self.assertIn(message, error)
             self.assertEqual(error.count("\n"), 1, error)
 
+    def test_records_gather_from_a_photon_map(self):
+        caching = ["gallery:penumbra", "--method", "irradiance-caching", "--gather", "from-photon-map",
+                   "--samples", "64"]
+        plan = self.run_cli("explain", *caching, "--photons", "5000").stdout
+        self.assertIn("64 rays each that end in a map of 5000 photons", plan)
+        self.run_cli("render", *caching, "--photons", "5000", "-o", "few.json")
+        self.assertEqual(self.read_json("few.json")["statistics"]["photons"], 5000)
+        error = self.run_cli("render", *caching, "--photons", "6000", "--records", "few.json", status=2).stderr
+        self.assertIn("photons 5000, and this job has 6000", error)
+
     def test_records_of_a_job_on_the_server(self):
         with Daemon(FLATLIGHTD) as daemon:
             self.environment["FLATLIGHT_SERVER"] = daemon.address

@@ -67,6 +67,13 @@ std::vector<Case> Cases() {
   exact.method = Method::kExact;
   Settings direct_picture = Of(Method::kPathTracing, {}, 0.05);
   direct_picture.max_bounces = 0;
+  const auto long_room = FurnishedRoom(false, 40).Build();
+  Settings by_rays = Of(Method::kIrradianceCaching, 64), by_distance = by_rays;
+  by_rays.max_bounces = 1;
+  by_rays.tolerance = 3e-3;
+  by_distance.error_control = ErrorControl::kSplitSphere;
+  by_distance.extrapolation = 1;
+  by_distance.max_records = 70;
   return {{"path tracing", room, Of(Method::kPathTracing, 300)},
           {"path tracing to a target", room, Of(Method::kPathTracing, 4096, 0.1)},
           {"path tracing of rare light", rare, Of(Method::kPathTracing, 4096, 0.1)},
@@ -75,7 +82,9 @@ std::vector<Case> Cases() {
           {"ray tracing to a target", room, Of(Method::kRayTracing, 4096, 0.1)},
           {"points and pictures", pictures, Of(Method::kPathTracing, 256)},
           {"pictures to a target", picture, direct_picture},
-          {"exact", room, exact}};
+          {"exact", room, exact},
+          {"irradiance caching by rays", long_room, by_rays},
+          {"irradiance caching by distance", long_room, by_distance}};
 }
 
 // Broken off after every `slices` calls.
@@ -108,6 +117,34 @@ TEST(CheckpointTest, ARenderingInPiecesHasTheBitsOfOneInOneGo) {
       EXPECT_GT(checkpoints, slices == 1 ? 1 : 0) << which.name;
       EXPECT_EQ(HashOf(*pieces.field), HashOf(*whole.field)) << which.name << ", " << slices << " slices a piece";
       EXPECT_EQ(pieces.field->rays, whole.field->rays) << which.name;
+      EXPECT_EQ(pieces.reason, whole.reason) << which.name;
+    }
+  }
+}
+
+// These begin with work that is done again each time, or come so far as to be written down but now and then.
+TEST(CheckpointTest, WhatIsWrittenDownSeldomHasTheSameBitsToo) {
+  const auto room = FurnishedRoom(false, 20).Build();
+  Settings panels = Of(Method::kIrradianceCaching, {}), photons = panels, densities = Of(Method::kPhotonMapping, {});
+  panels.max_bounces = 1;
+  photons.gather = Gather::kPhotonMap;
+  photons.photons = 3000;
+  photons.samples = 64;
+  densities.photons = 40'000;
+  densities.final_gather = false;
+  Settings gather = Of(Method::kPhotonMapping, 64);
+  gather.photons = 40'000;
+  for (const Case& which : {Case{"caching from panels", room, panels}, Case{"caching from photons", room, photons},
+                            Case{"densities", room, densities}, Case{"final gather", room, gather}}) {
+    const Ended whole = Render(which.scene, which.settings, 2);
+    for (const int slices : {1, 7}) {
+      int checkpoints = 0;
+      const Ended pieces = RenderInPieces(which, slices, checkpoints);
+      EXPECT_GT(checkpoints, 0) << which.name;
+      EXPECT_EQ(HashOf(*pieces.field), HashOf(*whole.field)) << which.name << ", " << slices << " slices a piece";
+      EXPECT_EQ(pieces.field->records.size(), whole.field->records.size()) << which.name;
+      EXPECT_EQ(pieces.field->rays, whole.field->rays) << which.name;
+      EXPECT_EQ(pieces.field->photons, whole.field->photons) << which.name;
       EXPECT_EQ(pieces.reason, whole.reason) << which.name;
     }
   }

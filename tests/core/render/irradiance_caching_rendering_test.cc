@@ -59,6 +59,19 @@ Difference FromReference(const std::shared_ptr<const Scene>& scene, const Settin
   return difference;
 }
 
+// Of the points: where the error is more than so many times its estimate.
+double ShareAboveEstimate(const Field& field, const Field& truth, double times) {
+  double above = 0, count = 0;
+  for (std::size_t p = 0; p < field.probes.size(); ++p) {
+    for (std::size_t i = 0; i < field.probes[p].irradiance.size(); ++i, ++count) {
+      const double error = std::abs(field.probes[p].irradiance[i] - truth.probes[p].irradiance[i]);
+      // What the reference is off by, 1e-6, aside.
+      if (error > times * field.probes[p].estimated_error[i] + 1e-6 * truth.probes[p].irradiance[i]) ++above;
+    }
+  }
+  return above / count;
+}
+
 // A room with a lamp, a blocker, a disc, and a wall that stands on the floor and lets light through above.
 SceneMaker DividedRoom(std::uint32_t points = 60) {
   SceneMaker maker = SquareRoom({.reflectance = {0.6}}, points);
@@ -125,6 +138,29 @@ TEST(IrradianceCachingRenderingTest, AgreesWithTheReferenceInARoundRoom) {
   EXPECT_LT(difference.largest, 5 * settings.tolerance.value());
 }
 
+TEST(IrradianceCachingRenderingTest, EstimatesHold) {
+  SceneMaker round;
+  round.Arc("ring", {{0, 0}, 1, 0, 6.283185307179586}, {.reflectance = {0.6}});
+  round.Arc("sun", {{-0.25, 0.1}, 0.15, 0, -6.283185307179586}, {.reflectance = {0.1}, .radiance = {3}});
+  round.Arc("moon", {{0.4, -0.2}, 0.25, 1, -2.5}, {.reflectance = {0.6}}).Probe("ring", 300);
+  for (const auto& scene : {DividedRoom().Build(), round.Build(), ReflectingFloor(true, true).Build()}) {
+    Settings truth;
+    truth.method = Method::kReference;
+    truth.derivatives = Derivatives::kNone;
+    const auto expected = Render(scene, truth).field;
+    for (const double tolerance : {0.03, 0.003}) {
+      for (const std::uint32_t degree : {1u, 2u}) {
+        Settings settings = Caching();
+        settings.tolerance = tolerance;
+        settings.extrapolation = degree;
+        const auto field = Render(scene, settings).field;
+        EXPECT_LT(ShareAboveEstimate(*field, *expected, 1), 0.06) << tolerance << ' ' << degree;
+        EXPECT_LT(ShareAboveEstimate(*field, *expected, 2), 0.02) << tolerance << ' ' << degree;
+      }
+    }
+  }
+}
+
 TEST(IrradianceCachingRenderingTest, RaysTellWhatPanelsTell) {
   const auto scene = DividedRoom().Build();
   Settings settings = Caching();
@@ -134,6 +170,70 @@ TEST(IrradianceCachingRenderingTest, RaysTellWhatPanelsTell) {
   const Difference difference = FromReference(scene, settings);
   EXPECT_LT(difference.rms, 0.02);
   EXPECT_LT(difference.largest, 0.3);
+}
+
+// Rays that end in a photon map, which is biased and noisy, and says so.
+TEST(IrradianceCachingRenderingTest, PhotonsTellWhatPanelsTell) {
+  const auto scene = DividedRoom().Build();
+  for (const std::optional<std::uint32_t> bounces : {std::optional<std::uint32_t>(1), std::optional<std::uint32_t>()}) {
+    Settings settings = Caching();
+    settings.max_bounces = bounces;
+    settings.gather = Gather::kPhotonMap;
+    settings.tolerance = 0.03;
+    double before = 1;
+    for (const std::uint32_t photons : {1u << 13, 1u << 18}) {
+      settings.photons = photons;
+      const Difference difference = FromReference(scene, settings);
+      EXPECT_LT(difference.rms, before / 3);
+      before = difference.rms;
+    }
+    EXPECT_LT(before, 0.015);
+    Settings truth;
+    truth.method = Method::kReference;
+    truth.derivatives = Derivatives::kNone;
+    truth.max_bounces = bounces;
+    const auto expected = Render(scene, truth).field, field = Render(scene, settings).field;
+    EXPECT_EQ(field->photons, static_cast<double>(*settings.photons));
+    EXPECT_LT(ShareAboveEstimate(*field, *expected, 2), 0.05);
+    settings.seed = 1;
+    EXPECT_NE(HashOf(*Render(scene, settings).field), HashOf(*field));
+  }
+}
+
+// Mirrors and glass, which panels cannot tell.
+TEST(IrradianceCachingRenderingTest, PhotonsTellAboutAllMaterials) {
+  const auto scene = RoomOfAllMaterials().Build();
+  Settings settings = Caching();
+  settings.gather = Gather::kPhotonMap;
+  settings.tolerance = 0.05;
+  const auto field = Render(scene, settings).field;
+  const auto expected = Render(scene, Sampled(512)).field;
+  double squares = 0, sum = 0;
+  for (std::size_t p = 0; p < field->probes.size(); ++p) {
+    for (std::size_t i = 0; i < field->probes[p].irradiance.size(); ++i) {
+      const double truth = expected->probes[p].irradiance[i], off = field->probes[p].irradiance[i] - truth;
+      squares += off * off, sum += truth * truth;
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / sum), 0.1);
+}
+
+TEST(IrradianceCachingRenderingTest, SettingsOfAPhotonMapThatMakeNoSenseAreMistakes) {
+  Settings settings = Caching();
+  settings.photons = 100;
+  EXPECT_THAT(Mistakes(*DividedRoom().Build(), settings),
+              UnorderedElementsAre(HasSubstr("settings.photons: applies to irradiance-caching where it gathers")));
+  settings.gather = Gather::kPhotonMap;
+  EXPECT_THAT(Mistakes(*DividedRoom().Build(), settings), testing::IsEmpty());
+  for (const std::uint32_t photons : {0u, 1u << 30}) {
+    settings.photons = photons;
+    EXPECT_THAT(Mistakes(*DividedRoom().Build(), settings),
+                UnorderedElementsAre(HasSubstr("settings.photons: is " + std::to_string(photons))));
+  }
+  settings.photons.reset();
+  settings.max_bounces = 0;
+  EXPECT_THAT(Mistakes(*DividedRoom().Build(), settings),
+              UnorderedElementsAre(HasSubstr("settings.gather: is from-photon-map, but nothing is reflected")));
 }
 
 // The divider parts light from dark: no record of one side counts on the other.
@@ -165,10 +265,12 @@ TEST(IrradianceCachingRenderingTest, NothingLeaksThroughAWall) {
 
 TEST(IrradianceCachingRenderingTest, ThreadsAndSlicesLeaveNoTrace) {
   const auto scene = DividedRoom().Build();
-  for (const bool rays : {false, true}) {
+  for (const Gather gather : {Gather::kReference, Gather::kRayTracing, Gather::kPhotonMap}) {
     Settings settings = Caching();
     settings.max_bounces = 1;
-    if (rays) settings.samples = 64;
+    settings.gather = gather;
+    if (gather != Gather::kReference) settings.samples = 64;
+    if (gather == Gather::kPhotonMap) settings.photons = 5000;
     settings.tolerance = 0.05;
     const Ended once = Render(scene, settings);
     for (const int threads : {2, 7}) {

@@ -109,7 +109,8 @@ TEST(SettingsConvertTest, EveryMethodAndEveryOrderOfDerivativesComesBack) {
 
 TEST(SettingsConvertTest, EveryErrorControlAndEveryGatherComesBack) {
   for (int control = v1::Settings::SPLIT_SPHERE; control <= v1::Settings::ErrorControl_MAX; ++control) {
-    for (const auto gather : {v1::Settings::FROM_REFERENCE, v1::Settings::FROM_RAY_TRACING}) {
+    for (const auto gather :
+         {v1::Settings::FROM_REFERENCE, v1::Settings::FROM_RAY_TRACING, v1::Settings::FROM_PHOTON_MAP}) {
       v1::Settings proto;
       proto.set_error_control(static_cast<v1::Settings::ErrorControl>(control));
       proto.set_gather(gather);

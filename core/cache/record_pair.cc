@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/cache/record_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/math/check.h"
+
+namespace flatlight {
+namespace {
+
+// Of a term to the one before, in what is estimated of the rest of a series.
+constexpr double kMostRatio = 0.75;
+
+// Weights of value and derivatives, each times its power of the width and over its factorial, of the end at which the
+// fraction t is 0.
+std::array<double, kRecordOrders> EndWeights(std::size_t degree, double t) {
+  const double s = 1 - t;
+  double fall = s;  // (1 - t)^(degree + 1)
+  for (std::size_t k = 0; k < degree; ++k) fall *= s;
+  std::array<double, kRecordOrders> partial{};  // Sums of binomial(degree + j, j) t^j.
+  double term = 1, sum = 0;
+  for (std::size_t j = 0; j <= degree; ++j) {
+    sum += term;
+    partial[j] = sum;
+    term *= t * static_cast<double>(degree + j + 1) / static_cast<double>(j + 1);
+  }
+  std::array<double, kRecordOrders> weights{};
+  double power = fall;
+  for (std::size_t k = 0; k <= degree; ++k) {
+    weights[k] = power * partial[degree - k];
+    power *= t / static_cast<double>(k + 1);
+  }
+  return weights;
+}
+
+}  // namespace
+
+bool RecordPair::Joins(const CacheRecord& left, const CacheRecord& right) {
+  return left.goes_on && right.goes_on && left.at < right.at && left.at + left.EventToRight() > right.at;
+}
+
+RecordPair::RecordPair(const CacheRecord& left, const CacheRecord& right, std::size_t degree)
+    : left_(left), right_(right), degree_(degree), width_(right.at - left.at) {
+  FLATLIGHT_DCHECK(degree < left.known && degree < right.known);
+  const std::size_t known = std::min(left.known, right.known);
+  for (std::size_t order = degree + 1; order < known && changes_ < change_.size(); ++order) {
+    // What one more derivative changes is (t (1 - t))^order times a linear function.
+    double over = 1;
+    for (std::size_t k = 0; k < order; ++k) over *= 16.0 / 3;
+    const auto linear = [&](double t) { return over * (Polynomial(order, t) - Polynomial(order - 1, t)); };
+    const Spectrum first = linear(0.25), last = linear(0.75);
+    change_[changes_++] = std::max((1.5 * first - 0.5 * last).MaxSize(), (1.5 * last - 0.5 * first).MaxSize());
+  }
+}
+
+Spectrum RecordPair::Polynomial(std::size_t degree, double fraction) const {
+  const std::array<double, kRecordOrders> left = EndWeights(degree, fraction), right = EndWeights(degree, 1 - fraction);
+  Spectrum sum;
+  double power = 1, signed_power = 1;
+  for (std::size_t k = 0; k <= degree; ++k) {
+    sum = sum + power * left[k] * left_.derivative[k] + signed_power * right[k] * right_.derivative[k];
+    power *= width_;
+    signed_power *= -width_;
+  }
+  return sum;
+}
+
+Spectrum RecordPair::At(double place) const { return Polynomial(degree_, Fraction(place)); }
+
+double RecordPair::LeftShare(double place) const { return EndWeights(degree_, Fraction(place))[0]; }
+
+double RecordPair::ErrorAt(double place) const {
+  // No more is known than what extrapolates.
+  if (changes_ == 0)
+    return std::min(left_.scale * left_.SmoothError(place - left_.at),
+                    right_.scale * right_.SmoothError(right_.at - place));
+  const double t = Fraction(place), both = t * (1 - t);
+  double power = both;
+  for (std::size_t k = 0; k < degree_; ++k) power *= both;
+  const double first = change_[0] * power, second = change_[1] * power * both;
+  if (changes_ == 1 || second == 0) return first + second;
+  const double ratio = second < kMostRatio * first ? second / first : kMostRatio;
+  return first + second / (1 - ratio);
+}
+
+double RecordPair::CostAt(double place) const {
+  const double error = ErrorAt(place);
+  const double scale = left_.least > 0 ? std::max(At(place).Max(), left_.least) : left_.scale;
+  return error == 0 ? 0 : scale > 0 ? error / scale : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace flatlight

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which scenes panels can do: the reference, and records that gather from it.
+#ifndef FLATLIGHT_CORE_RENDER_PANEL_PLAN_H_
+#define FLATLIGHT_CORE_RENDER_PANEL_PLAN_H_
+
+#include <string>
+
+#include "core/scene/diagnostic.h"
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+// Whether panels can tell light that a scene reflects, and its derivatives.
+bool PanelsTellAll(const Scene& scene);
+
+// Reports why they cannot tell it. `reflects`: there is any; `path`: of the setting that asks for them; `other`: what
+// to use else.
+void CheckPanels(const Scene& scene, bool reflects, const std::string& path, const std::string& other,
+                 Diagnostics& diagnostics);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_RENDER_PANEL_PLAN_H_
