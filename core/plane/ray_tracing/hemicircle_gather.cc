@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/plane/ray_tracing/edge_on.h"
 #include "core/plane/ray_tracing/end_finder.h"
 #include "core/sampling/hash.h"
 #include "core/scene/element_frame.h"
@@ -15,6 +16,7 @@ namespace {
 constexpr std::uint64_t kShift = std::uint64_t{1} << 40;
 constexpr std::uint64_t kRays = kShift + 1;
 constexpr std::uint64_t kHorizon = std::uint64_t{1} << 41;
+constexpr std::uint64_t kEdgeOn = std::uint64_t{1} << 44;
 constexpr std::uint64_t kPast = std::uint64_t{1} << 42;
 
 // Among few rays, those for derivatives alone are many: they branch as if they were one of fewer, to cost less than a
@@ -35,6 +37,37 @@ void Cast(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std
     ray.normal = Dot(hit->normal, direction) < 0 ? hit->normal : -hit->normal;
   } else {
     ray.radiance = tree.Sky();
+  }
+}
+
+// Adds three rays that stand for no stretch where a piece is seen edge-on and none of `gathered` has met it: what is on
+// either side of it and the piece itself, with its ends between them.
+void LookAtEdgeOnPieces(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
+                        const Cancellation& cancellation, std::vector<GatheredRay>& gathered, double& cast) {
+  const EdgeOnPieces found(tree.caster(), receiver, rays);
+  std::uint64_t number = 0;
+  for (const EdgeOnPiece& piece : found.pieces()) {
+    const auto own = [&] { return ChildKey(key, kEdgeOn + number++); };
+    const auto after =
+        std::find_if(gathered.begin(), gathered.end(), [&](const GatheredRay& ray) { return ray.sine > piece.low.s; });
+    const auto met = [&](const GatheredRay& ray) { return ray.element == piece.element; };
+    if (after == gathered.begin() || after == gathered.end() || met(*after) || met(*(after - 1))) continue;
+    const double step = 4 * tree.caster().scene().touch_distance() * std::max({piece.low.q, piece.high.q, 1.0});
+    GatheredRay left, middle, right;
+    left.sine = piece.low.s - step, right.sine = piece.high.s + step;
+    if (!(left.sine > (after - 1)->sine && right.sine < after->sine)) continue;
+    for (GatheredRay* ray : {&left, &middle, &right}) ray->begin = ray->end = after->begin;
+    Cast(tree, receiver, Sparing(rays), own(), cancellation, left, cast);
+    Cast(tree, receiver, Sparing(rays), own(), cancellation, right, cast);
+    middle.sine = (piece.low.s + piece.high.s) / 2;
+    middle.cosine = CosineOf(middle.sine);
+    middle.radiance = tree.Radiance(piece.middle, piece.toward, Sparing(rays), own(), cancellation, cast);
+    middle.element = piece.element;
+    middle.to = piece.middle.position - receiver.position;
+    middle.normal = Dot(piece.middle.normal, piece.toward) < 0 ? piece.middle.normal : -piece.middle.normal;
+    middle.break_before = piece.low;
+    right.break_before = piece.high;
+    gathered.insert(after, {left, middle, right});
   }
 }
 
@@ -63,6 +96,7 @@ void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t r
   // The horizon is a neighbour too: something may end just above it.
   GatheredRay left, right;
   left.sine = left.begin = left.end = -1, right.sine = right.begin = right.end = 1;
+  LookAtEdgeOnPieces(tree, receiver, rays, key, cancellation, gathered, cast);
   gathered.insert(gathered.begin(), left);
   gathered.push_back(right);
   std::vector<GatheredRay> all;
@@ -71,6 +105,7 @@ void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t r
   for (std::size_t k = 0; k < gathered.size(); ++k) {
     all.push_back(gathered[k]);
     if (k + 1 == gathered.size()) break;
+    if (gathered[k + 1].break_before) continue;  // It is known.
     GatheredRay after = gathered[k + 1];
     later.clear();
     for (int look = 0; look < kMostLooks; ++look) {
