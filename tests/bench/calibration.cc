@@ -31,11 +31,11 @@
 namespace flatlight {
 namespace {
 
-constexpr std::uint32_t kPoints = 64;
-constexpr std::uint32_t kSeeds = 16;
-constexpr std::uint32_t kCheckedSeeds = 4;
+constexpr std::uint32_t kPoints = 256;
+constexpr std::uint32_t kSeeds = 4;
+constexpr std::uint32_t kCheckedSeeds = 1;
 constexpr std::uint32_t kCheckedSamples = 256;
-constexpr std::uint32_t kTruthSamples = 1 << 16;
+constexpr std::uint32_t kTruthSamples = 1 << 14;
 constexpr std::uint32_t kTruthSeed = 1'000'000;
 constexpr double kRounding = 1e-9;  // Relative to the brightest point: values stated to be better hardly have noise.
 
@@ -170,7 +170,7 @@ void Measure(const NamedScene& scene, bool direct, const std::string& only_metho
       settings.method = method;
       if (rays) settings.derivatives = direct ? Derivatives::kHessian : Derivatives::kGradient;
       if (direct) settings.max_bounces = 0;
-      const std::uint32_t seeds = rays && !direct ? kSeeds / 4 : kSeeds;
+      const std::uint32_t seeds = rays && !direct ? 1 : kSeeds;
       for (const auto& [quantity, calibration] : Calibrate(scene, *truth, settings, seeds, pool)) {
         std::vector<std::string> row = {scene.name, direct ? "direct" : "all", name, quantity, std::to_string(samples)};
         const std::vector<std::string> columns = calibration.Columns();
