@@ -93,31 +93,33 @@ void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t r
                   const Cancellation& cancellation, std::vector<GatheredRay>& gathered, double& cast) {
   constexpr int kMostLooks = 8;  // Between two rays.
   const EndFinder ends(tree.caster().scene(), receiver);
+  LookAtEdgeOnPieces(tree, receiver, rays, key, cancellation, gathered, cast);
   // The horizon is a neighbour too: something may end just above it.
   GatheredRay left, right;
   left.sine = left.begin = left.end = -1, right.sine = right.begin = right.end = 1;
-  LookAtEdgeOnPieces(tree, receiver, rays, key, cancellation, gathered, cast);
-  gathered.insert(gathered.begin(), left);
-  gathered.push_back(right);
   std::vector<GatheredRay> all;
-  all.reserve(2 * gathered.size());
+  all.reserve(gathered.size() + gathered.size() / 2 + kMostLooks);
   std::vector<GatheredRay> later;  // Those found on the way from the ray after to the ray before, the last one first.
-  for (std::size_t k = 0; k < gathered.size(); ++k) {
-    all.push_back(gathered[k]);
-    if (k + 1 == gathered.size()) break;
-    if (gathered[k + 1].break_before) continue;  // It is known.
-    GatheredRay after = gathered[k + 1];
+  for (std::size_t k = 0; k <= gathered.size(); ++k) {
+    const bool last = k == gathered.size();
+    if (k > 0) all.push_back(gathered[k - 1]);
+    const GatheredRay& next = last ? right : gathered[k];
+    // Where they meet one surface, or what lies between is known, there is nothing to look for.
+    if (next.break_before || (k > 0 && all.back().element == next.element)) continue;
+    const double end_before = k > 0 ? all.back().end : left.end;
+    GatheredRay after = next;
     later.clear();
     for (int look = 0; look < kMostLooks; ++look) {
-      const std::optional<Edge> end = ends.Between(all.back(), after);
+      const GatheredRay& before = all.empty() ? left : all.back();
+      const std::optional<Edge> end = ends.Between(before, after);
       if (!end) break;
-      const bool forward = all.back().InverseDistance() >= after.InverseDistance();
+      const bool forward = before.InverseDistance() >= after.InverseDistance();
       GatheredRay past;
-      past.begin = past.end = gathered[k].end;
+      past.begin = past.end = end_before;
       // As far beyond the end as coordinates are sure of.
       const double step = 4 * tree.caster().scene().touch_distance() * std::max(end->q, 1.0);
       past.sine = end->s + (forward ? step : -step);
-      if (!(past.sine > all.back().sine && past.sine < after.sine)) break;
+      if (!(past.sine > before.sine && past.sine < after.sine)) break;
       Cast(tree, receiver, Sparing(rays),
            ChildKey(key, kPast + (std::uint64_t{k} << 8) + static_cast<std::uint64_t>(look)), cancellation, past, cast);
       if (forward) {
@@ -128,15 +130,15 @@ void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t r
         later.push_back(after);
         after = past;
       }
-      if (all.back().element == after.element) break;
+      if ((all.empty() ? left : all.back()).element == after.element) break;
     }
     if (!later.empty()) {
       all.push_back(after);
       while (later.size() > 1) all.push_back(later.back()), later.pop_back();
-      gathered[k + 1].break_before = later.front().break_before;
+      if (!last) gathered[k].break_before = later.front().break_before;
     }
   }
-  gathered.assign(all.begin() + 1, all.end() - 1);
+  gathered.swap(all);
 }
 
 Spectrum EmittedToward(const Scene& scene, const Receiver& receiver, const GatheredRay& ray) {
@@ -154,9 +156,12 @@ Spectrum IrradianceOf(const std::vector<GatheredRay>& gathered) {
 Spectrum RotationOf(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
                     const Cancellation& cancellation, const std::vector<GatheredRay>& gathered, double& cast) {
   Spectrum sum;
+  double high = CosineOf(gathered.front().begin);
   for (std::size_t k = 0; k < gathered.size(); ++k) {
     const GatheredRay& ray = gathered[k];
-    const double low = CosineOf(ray.begin), high = CosineOf(ray.end);
+    // A stretch begins where the one before ends.
+    const double low = high;
+    high = CosineOf(ray.end);
     if (k == 0 || k + 1 == gathered.size()) {
       // Evenly among the cosines of the stretch.
       const double side = k == 0 ? -1 : 1, border = k == 0 ? high : low;
