@@ -40,6 +40,13 @@ void Cast(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std
   }
 }
 
+// Whether a piece ends at the same point as another's vertex, bit for bit.
+bool EndsAt(const Scene& scene, ElementId id, const Edge& vertex) {
+  if (id == ElementId::kNone || vertex.kind != Edge::Kind::kVertex) return false;
+  const Element& element = scene.element(id);
+  return element.a == vertex.point || element.b == vertex.point;
+}
+
 // Adds three rays that stand for no stretch where a piece is seen edge-on and none of `gathered` has met it: what is on
 // either side of it and the piece itself, with its ends between them.
 void LookAtEdgeOnPieces(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
@@ -114,6 +121,11 @@ void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t r
       const std::optional<Edge> end = ends.Between(before, after);
       if (!end) break;
       const bool forward = before.InverseDistance() >= after.InverseDistance();
+      if (EndsAt(tree.caster().scene(), (forward ? after : before).element, *end)) {
+        // A corner: there is nothing between its sides.
+        (later.empty() && !last ? gathered[k] : after).break_before = end;
+        break;
+      }
       GatheredRay past;
       past.begin = past.end = end_before;
       // As far beyond the end as coordinates are sure of.

@@ -128,6 +128,19 @@ TEST(RayTracingTest, GradientKnowsPiecesThatAreSeenEdgeOn) {
   }
 }
 
+TEST(RayTracingTest, DerivativesTakeFewRaysMore) {
+  SceneMaker maker = SquareRoom({.reflectance = {0.5}}, 4);
+  maker.Segment("lamp", {0.3, 0.9}, {-0.3, 0.9}, {.radiance = {3}});
+  maker.Polyline("box", {{0.1, -0.5}, {0.1, 0}, {-0.4, 0}, {-0.4, -0.5}}, true, {.reflectance = {0.5}});
+  const auto scene = maker.Build();
+  Settings settings = Branching(256);
+  settings.max_bounces = 3;
+  settings.derivatives = Derivatives::kNone;
+  const double alone = Render(scene, settings).field->rays;
+  settings.derivatives = Derivatives::kGradient;
+  EXPECT_LT(Render(scene, settings).field->rays, 1.15 * alone);
+}
+
 TEST(RayTracingTest, RotationIsThatOfTheIrradiance) {
   SceneMaker maker;
   maker.Segment("floor", {0, 0}, {2, 0}, {.reflectance = {0.6}})
