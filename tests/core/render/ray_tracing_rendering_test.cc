@@ -138,7 +138,7 @@ TEST(RayTracingTest, DerivativesTakeFewRaysMore) {
   settings.derivatives = Derivatives::kNone;
   const double alone = Render(scene, settings).field->rays;
   settings.derivatives = Derivatives::kGradient;
-  EXPECT_LT(Render(scene, settings).field->rays, 1.15 * alone);
+  EXPECT_LT(Render(scene, settings).field->rays, 1.105 * alone);
 }
 
 TEST(RayTracingTest, RotationIsThatOfTheIrradiance) {
