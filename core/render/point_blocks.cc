@@ -19,6 +19,14 @@ constexpr double kMostBlocksPerShard = 4096;
 // Between two merges each thread gets at most this many shards: enough to even out, few enough to hold in memory.
 constexpr double kShardsPerThread = 24;
 
+double VarianceOf(std::span<const double> values) {
+  double sum = 0, squares = 0;
+  for (const double x : values) sum += x;
+  const double mean = sum / static_cast<double>(values.size());
+  for (const double x : values) squares += (x - mean) * (x - mean);
+  return squares / static_cast<double>(values.size() - 1);
+}
+
 }  // namespace
 
 PointBlocks::PointBlocks(const PointSampler& sampler, std::size_t points)
@@ -27,7 +35,8 @@ PointBlocks::PointBlocks(const PointSampler& sampler, std::size_t points)
       trees_(points, BlockTree(Width())),
       doubts_(points * sampler.channels()),
       ranges_(points * 2 * sampler.channels()),
-      variances_(points * 2 * sampler.channels()) {}
+      variances_(points * 2 * sampler.channels()),
+      spreads_(points * 2 * sampler.channels() * 3) {}
 
 void PointBlocks::UpdateVariances(std::size_t point) {
   const double samples = static_cast<double>(blocks(point)) * kHalfReplicates;
@@ -35,7 +44,16 @@ void PointBlocks::UpdateVariances(std::size_t point) {
     for (std::size_t c = 0; c < channels_; ++c) {
       const double mean = trees_[point].Total(MomentColumn(half, c)) / samples;
       const double square = trees_[point].Total(MomentColumn(half, c) + 1) / samples;
-      variances_[(point * 2 + half) * channels_ + c] = std::max(square - mean * mean, 0.0);
+      const std::size_t at = (point * 2 + half) * channels_ + c;
+      variances_[at] = std::max(square - mean * mean, 0.0);
+      std::array<double, kHalfReplicates> sums;
+      for (std::size_t r = 0; r < kHalfReplicates; ++r)
+        sums[r] = trees_[point].Total(c * kReplicates + half * kHalfReplicates + r);
+      const double scale = 1 / static_cast<double>(blocks(point));  // Of the sum of a replicate to a sample.
+      constexpr std::size_t kQuarter = kHalfReplicates / 2;
+      spreads_[at * 3] = scale * VarianceOf(sums);
+      for (std::size_t q = 0; q < 2; ++q)
+        spreads_[at * 3 + 1 + q] = scale * VarianceOf(std::span(sums).subspan(q * kQuarter, kQuarter));
     }
   }
 }
@@ -47,8 +65,8 @@ void PointBlocks::Resume() {
   }
 }
 
-MeanEstimate PointBlocks::Estimate(std::size_t point, std::size_t channel, Halves halves,
-                                   const Missable& missable) const {
+MeanEstimate PointBlocks::Estimate(std::size_t point, std::size_t channel, Halves halves, const Missable& missable,
+                                   const NearbyVariance& nearby) const {
   std::array<double, kReplicates> means;
   const auto blocks = static_cast<double>(this->blocks(point));
   const std::size_t count = halves.count() * kHalfReplicates;
@@ -59,7 +77,7 @@ MeanEstimate PointBlocks::Estimate(std::size_t point, std::size_t channel, Halve
   of_value.seen /= blocks;
   of_value.largest /= blocks;
   of_value.variance /= blocks * static_cast<double>(count);
-  MeanEstimate estimate = EstimateMean(std::span(means).first(count), of_value);
+  MeanEstimate estimate = EstimateMean(std::span(means).first(count), of_value, {nearby.mean / blocks, nearby.share});
   estimate.rounding = doubt(point, channel).rounding;
   return estimate;
 }

@@ -47,14 +47,24 @@ class PointBlocks {
     return variances_[(point * 2 + half) * channels_ + channel];
   }
 
+  // The variance of one sample of a replicate, as the means of replicates tell it, those of a half or of a quarter.
+  double ReplicateVariance(std::size_t point, std::size_t half, std::size_t channel) const {
+    return spreads_[((point * 2 + half) * channels_ + channel) * 3];
+  }
+  double QuarterVariance(std::size_t point, std::size_t half, std::size_t channel, std::size_t quarter) const {
+    return spreads_[((point * 2 + half) * channels_ + channel) * 3 + 1 + quarter];
+  }
+
   // The halves [first, last) of the replicates.
   struct Halves {
     std::size_t first = 0;
     std::size_t last = 2;
     std::size_t count() const { return last - first; }
   };
-  // The estimate from some halves of a point that has blocks. `missable` is of single samples, not of replicates.
-  MeanEstimate Estimate(std::size_t point, std::size_t channel, Halves halves, const Missable& missable) const;
+  // The estimate from some halves of a point that has blocks. `missable` and `nearby` are of single samples, not of
+  // replicates' means.
+  MeanEstimate Estimate(std::size_t point, std::size_t channel, Halves halves, const Missable& missable,
+                        const NearbyVariance& nearby) const;
 
   // What to bring each point up to: one number of blocks a point; points that are further stay.
   void SetGoals(std::vector<std::uint64_t> goals);
@@ -101,7 +111,7 @@ class PointBlocks {
   void Work(Shard& shard, const Cancellation& cancellation) const;
   // Finds again what follows from the blocks.
   void Resume();
-  // Brings variances_ up to the blocks of a point.
+  // Brings variances_ and spreads_ up to the blocks of a point.
   void UpdateVariances(std::size_t point);
   // True if everything was complete.
   bool Merge(const std::vector<Shard>& shards);
@@ -120,6 +130,7 @@ class PointBlocks {
   std::vector<PointSampler::Doubt> doubts_;  // Point, then channel.
   std::vector<SampleRange> ranges_;          // Point, then half, then channel.
   std::vector<double> variances_;            // Likewise.
+  std::vector<double> spreads_;              // Likewise; of each the half's and its two quarters'.
   double total_blocks_ = 0;
   double rays_ = 0;
   // How to cut work: measured, without influence on sums.

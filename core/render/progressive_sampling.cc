@@ -118,7 +118,8 @@ bool ProgressiveSampling::ConfirmDecisions() {
   const ProbeMeans means = CurrentMeans();
   bool confirmed = true;
   for (std::size_t point = 0; point < blocks_.points(); ++point) {
-    if (halves_[point].decided() && WorstError(point, means) > *goal_.target_error) halves_[point].Reopen();
+    if (halves_[point].decided() && WorstError(point, Value(point), means) > *goal_.target_error)
+      halves_[point].Reopen();
     confirmed = confirmed && halves_[point].decided();
   }
   return confirmed;
@@ -177,15 +178,18 @@ void ProgressiveSampling::PlanRound(Clock::Time now) {
 }
 
 void ProgressiveSampling::UpdateWorstError() {
-  const ProbeMeans means = CurrentMeans();
+  std::vector<PointValue> values(blocks_.points());
+  for (std::size_t point = 0; point < values.size(); ++point) values[point] = Value(point);
+  const ProbeMeans means = MeansOverProbes([&](std::size_t point) -> const auto& { return values[point].estimates; });
   double worst = 0;
-  for (std::size_t point = 0; point < blocks_.points(); ++point) worst = std::max(worst, WorstError(point, means));
+  for (std::size_t point = 0; point < values.size(); ++point) {
+    worst = std::max(worst, WorstError(point, values[point], means));
+  }
   worst_error_.reset();
   if (std::isfinite(worst)) worst_error_ = worst;
 }
 
-double ProgressiveSampling::WorstError(std::size_t point, const ProbeMeans& means) const {
-  const PointValue value = Value(point);
+double ProgressiveSampling::WorstError(std::size_t point, const PointValue& value, const ProbeMeans& means) const {
   double worst = 0;
   for (std::size_t c = 0; c < channels(); ++c) {
     const double floor = kDarkest * means[probe_of_point_[point] * channels() + c];
@@ -202,7 +206,7 @@ ProgressiveSampling::ProbeMeans ProgressiveSampling::MeansOverProbes(const Value
   std::size_t first = 0;
   for (std::size_t probe = 0; probe < probe_ends_.size(); ++probe) {
     for (std::size_t point = first; point < probe_ends_[probe]; ++point) {
-      const std::vector<MeanEstimate> estimates = values(point);
+      const std::vector<MeanEstimate>& estimates = values(point);
       for (std::size_t c = 0; c < channels(); ++c) means[probe * channels() + c] += estimates[c].mean;
     }
     const auto count = static_cast<double>(probe_ends_[probe] - first);
@@ -212,14 +216,33 @@ ProgressiveSampling::ProbeMeans ProgressiveSampling::MeansOverProbes(const Value
   return means;
 }
 
+std::pair<std::size_t, std::size_t> ProgressiveSampling::Neighbours(std::size_t point) const {
+  const std::size_t probe = probe_of_point_[point];
+  return {std::max(probe == 0 ? 0 : probe_ends_[probe - 1], point - std::min(point, kNeighbours)),
+          std::min(probe_ends_[probe], point + kNeighbours + 1)};
+}
+
+NearbyVariance ProgressiveSampling::NearbyAt(std::size_t point, std::size_t channel, Halves halves) const {
+  NearbyVariances nearby;
+  const auto [begin, end] = Neighbours(point);
+  for (std::size_t p = begin; p < end; ++p) {
+    if (blocks_.blocks(p) == 0) continue;
+    if (halves.count() == 2) {
+      nearby.Add(blocks_.ReplicateVariance(p, 0, channel), blocks_.ReplicateVariance(p, 1, channel));
+    } else {
+      nearby.Add(blocks_.QuarterVariance(p, halves.first, channel, 0),
+                 blocks_.QuarterVariance(p, halves.first, channel, 1));
+    }
+  }
+  return nearby.Result();
+}
+
 Missable ProgressiveSampling::MissableAt(std::size_t point, std::size_t channel, Halves halves) const {
   const PointSampler::Doubt& doubt = blocks_.doubt(point, channel);
   Missable missable;
   missable.largest = doubt.step + doubt.brightest;
   if (missable.largest == 0) return missable;
-  const std::size_t probe = probe_of_point_[point];
-  const std::size_t begin = std::max(probe == 0 ? 0 : probe_ends_[probe - 1], point - std::min(point, kNeighbours));
-  const std::size_t end = std::min(probe_ends_[probe], point + kNeighbours + 1);
+  const auto [begin, end] = Neighbours(point);
   double variance = 0;
   double count = 0;
   for (std::size_t p = begin; p < end; ++p) {
@@ -239,7 +262,7 @@ Missable ProgressiveSampling::MissableAt(std::size_t point, std::size_t channel,
 CrossedHalves::HalfEstimate ProgressiveSampling::EstimateOf(std::size_t point, Halves halves) const {
   CrossedHalves::HalfEstimate estimates;
   for (std::size_t c = 0; c < channels(); ++c)
-    estimates.push_back(blocks_.Estimate(point, c, halves, MissableAt(point, c, halves)));
+    estimates.push_back(blocks_.Estimate(point, c, halves, MissableAt(point, c, halves), NearbyAt(point, c, halves)));
   return estimates;
 }
 

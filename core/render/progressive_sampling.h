@@ -87,11 +87,14 @@ class ProgressiveSampling {
   template <typename Values>
   ProbeMeans MeansOverProbes(const Values& values) const;
   ProbeMeans CurrentMeans() const;
-  double WorstError(std::size_t point, const ProbeMeans& means) const;
+  double WorstError(std::size_t point, const PointValue& value, const ProbeMeans& means) const;
   using Halves = PointBlocks::Halves;
 
   // What samples may have missed at the point, as its neighbours tell by the same halves of their replicates.
   Missable MissableAt(std::size_t point, std::size_t channel, Halves halves) const;
+  NearbyVariance NearbyAt(std::size_t point, std::size_t channel, Halves halves) const;
+  // The points [first, last) of the same probe that are near.
+  std::pair<std::size_t, std::size_t> Neighbours(std::size_t point) const;
   CrossedHalves::HalfEstimate EstimateOf(std::size_t point, Halves halves) const;
   std::array<CrossedHalves::HalfEstimate, 2> HalfEstimates(std::size_t point) const;
   bool Active(std::size_t point) const { return !goal_.target_error.has_value() || !halves_[point].decided(); }

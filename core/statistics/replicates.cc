@@ -18,7 +18,17 @@ double MeanEstimate::StandardError() const {
   return std::max(spread, kRounding * std::abs(mean) + rounding);
 }
 
-MeanEstimate EstimateMean(std::span<const double> values, const Missable& missable) {
+NearbyVariance NearbyVariances::Result() const {
+  constexpr double kFewest = 4;
+  if (count_ < kFewest) return {};
+  const double mean_a = sum_a_ / count_, mean_b = sum_b_ / count_;
+  const double common = std::max((products_ - count_ * mean_a * mean_b) / (count_ - 1), 0.0);
+  const double noise = differences_ / (4 * count_);  // Of the average of a pair.
+  if (!(noise > 0)) return {};
+  return {(mean_a + mean_b) / 2, common / (common + noise)};
+}
+
+MeanEstimate EstimateMean(std::span<const double> values, const Missable& missable, const NearbyVariance& nearby) {
   const auto n = static_cast<double>(values.size());
   double sum = 0;
   for (const double x : values) sum += x;
@@ -26,13 +36,19 @@ MeanEstimate EstimateMean(std::span<const double> values, const Missable& missab
   estimate.mean = sum / n;
   double squares = 0;
   for (const double x : values) squares += (x - estimate.mean) * (x - estimate.mean);
-  estimate.variance = squares / ((n - 1) * n);
-  estimate.degrees_of_freedom = n - 1;
+  // What cannot miss anything is not like its neighbours.
+  const double share = missable.largest > 0 ? nearby.share : 1;
+  const double others = nearby.mean / n;
+  estimate.variance = share * (squares / ((n - 1) * n)) + (1 - share) * others;
+  constexpr double kLeastShare = 1e-3;
+  estimate.degrees_of_freedom = (n - 1) / std::max(share, kLeastShare);
   // One value that has met the event makes the sum of squares (1 - 1/n) times its square.
   const double event = std::max(missable.seen, missable.share * missable.largest);
   if (squares < 0.25 * event * event) {
     const double most = missable.largest * std::sqrt(2 / ((n + 2) * (n + 3)));
-    estimate.unresolved = std::clamp(std::sqrt(missable.variance), missable.share * most, most);
+    const double frequent = share < 1 ? std::min(missable.variance, others) : missable.variance;
+    const double doubt = std::clamp(std::sqrt(frequent), missable.share * most, most);
+    estimate.unresolved = std::sqrt(std::max(doubt * doubt - estimate.variance, 0.0));
   }
   return estimate;
 }

@@ -42,11 +42,37 @@ struct Missable {
   double variance = std::numeric_limits<double>::infinity();
 };
 
+// Variances of replicates' values at a point's neighbours. A variance that is told by few replicates is a noisy thing,
+// and low just where rare bright paths were missed; so a point's own counts by its `share`, that of its neighbours
+// makes up the rest.
+struct NearbyVariance {
+  double mean = 0;   // Of single values.
+  double share = 1;  // 1: the point's own alone.
+};
+
+// Tells from pairs of independent variances, of one point each, how far points differ: what the two have in common is
+// the point's, the rest is noise. The best linear guess at a point's true variance is then mean + share * (own - mean),
+// whatever their distribution.
+class NearbyVariances {
+ public:
+  void Add(double a, double b) {
+    ++count_;
+    sum_a_ += a, sum_b_ += b;
+    products_ += a * b;
+    differences_ += (a - b) * (a - b);
+  }
+  // Of few points nothing is known.
+  NearbyVariance Result() const;
+
+ private:
+  double count_ = 0, sum_a_ = 0, sum_b_ = 0, products_ = 0, differences_ = 0;
+};
+
 // Stratified samples place an edge to within one sample, and rare events are missed, so values may all agree and all be
 // wrong. Let a share d of such values have met the event, all d alike likely: if none of n has, the mean square of d is
 // 2/((n + 2)(n + 3)) (Laplace's rule of succession), and the doubt that follows is added: that of the largest event,
 // less where samples nearby tell of rarer or smaller ones. If some values have met it, their spread tells.
-MeanEstimate EstimateMean(std::span<const double> values, const Missable& missable);
+MeanEstimate EstimateMean(std::span<const double> values, const Missable& missable, const NearbyVariance& nearby = {});
 
 // The same, where nothing is known from nearby of an event that changes a value by `step`.
 inline MeanEstimate EstimateMean(std::span<const double> values, double step) {

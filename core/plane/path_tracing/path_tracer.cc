@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <variant>
 
+#include "core/plane/shaft.h"
+
 namespace flatlight {
 namespace {
 
@@ -59,9 +61,24 @@ PathTracer::PathTracer(std::shared_ptr<const RayCaster> caster, const PathTracin
   }
 }
 
+bool PathTracer::SkyIsOpen(const Vertex& vertex) const {
+  if (scene_.environment().IsBlack()) return true;
+  constexpr std::size_t kMostElements = 64;  // In larger scenes something is in the way.
+  const std::vector<Element>& elements = scene_.elements();
+  if (elements.size() > kMostElements) return false;
+  return std::all_of(elements.begin(), elements.end(), [&](const Element& element) {
+    const Corners corners = CornersOf(element);
+    return std::all_of(corners.point.begin(), corners.point.begin() + corners.count, [&](Point2 corner) {
+      return Dot(vertex.normal, corner - vertex.at.position) <= scene_.touch_distance();
+    });
+  });
+}
+
 Spectrum PathTracer::DirectStep(const Receiver& receiver, const EmitterSight& sight) const {
   if (receiver.half_angle > 0) return BrightestEmission();
-  return options_.nothing_blocks ? Spectrum{} : emitters_.Unblocked(VertexAt(scene_, receiver), sight);
+  const Vertex vertex = VertexAt(scene_, receiver);
+  const Spectrum step = options_.nothing_blocks ? Spectrum{} : emitters_.Unblocked(vertex, sight);
+  return SkyIsOpen(vertex) ? step : step + 2 * scene_.environment();
 }
 
 Spectrum PathTracer::BrightestEmission() const {

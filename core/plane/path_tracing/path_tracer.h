@@ -76,8 +76,8 @@ class PathTracer {
   // What shapes tell of the ways from the receiver to the emitters: worth remembering.
   EmitterSight SightFrom(const Receiver& receiver) const { return sights_.FromPoint(VertexAt(scene_, receiver)); }
 
-  // What the emitters that may be blocked or not would give the receiver if nothing blocked them: the most by which
-  // finding a ray blocked or not can change a sample of direct light.
+  // What the emitters that may be blocked or not, and the sky, would give the receiver if nothing blocked them: the
+  // most by which finding a ray blocked or not can change a sample of direct light.
   Spectrum DirectStep(const Receiver& receiver, const EmitterSight& sight) const;
   // In any direction.
   Spectrum BrightestEmission() const;
@@ -106,6 +106,8 @@ class PathTracer {
   };
   static constexpr std::uint32_t kLambertian = 0xffffffff;
 
+  // Whether it is certain that nothing is above the horizon of a vertex that the sky lights.
+  bool SkyIsOpen(const Vertex& vertex) const;
   std::uint32_t MostBounces() const { return options_.max_bounces.value_or(std::numeric_limits<std::uint32_t>::max()); }
 
   std::shared_ptr<const RayCaster> caster_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/plane/ray_tracing/edge_on.h"
 #include "core/plane/ray_tracing/end_finder.h"
 #include "core/sampling/hash.h"
 #include "core/scene/element_frame.h"
@@ -15,6 +16,7 @@ namespace {
 constexpr std::uint64_t kShift = std::uint64_t{1} << 40;
 constexpr std::uint64_t kRays = kShift + 1;
 constexpr std::uint64_t kHorizon = std::uint64_t{1} << 41;
+constexpr std::uint64_t kEdgeOn = std::uint64_t{1} << 44;
 constexpr std::uint64_t kPast = std::uint64_t{1} << 42;
 
 // Among few rays, those for derivatives alone are many: they branch as if they were one of fewer, to cost less than a
@@ -35,6 +37,44 @@ void Cast(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std
     ray.normal = Dot(hit->normal, direction) < 0 ? hit->normal : -hit->normal;
   } else {
     ray.radiance = tree.Sky();
+  }
+}
+
+// Whether a piece ends at the same point as another's vertex, bit for bit.
+bool EndsAt(const Scene& scene, ElementId id, const Edge& vertex) {
+  if (id == ElementId::kNone || vertex.kind != Edge::Kind::kVertex) return false;
+  const Element& element = scene.element(id);
+  return element.a == vertex.point || element.b == vertex.point;
+}
+
+// Adds three rays that stand for no stretch where a piece is seen edge-on and none of `gathered` has met it: what is on
+// either side of it and the piece itself, with its ends between them.
+void LookAtEdgeOnPieces(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
+                        const Cancellation& cancellation, std::vector<GatheredRay>& gathered, double& cast) {
+  const EdgeOnPieces found(tree.caster(), receiver, rays);
+  std::uint64_t number = 0;
+  for (const EdgeOnPiece& piece : found.pieces()) {
+    const auto own = [&] { return ChildKey(key, kEdgeOn + number++); };
+    const auto after =
+        std::find_if(gathered.begin(), gathered.end(), [&](const GatheredRay& ray) { return ray.sine > piece.low.s; });
+    const auto met = [&](const GatheredRay& ray) { return ray.element == piece.element; };
+    if (after == gathered.begin() || after == gathered.end() || met(*after) || met(*(after - 1))) continue;
+    const double step = 4 * tree.caster().scene().touch_distance() * std::max({piece.low.q, piece.high.q, 1.0});
+    GatheredRay left, middle, right;
+    left.sine = piece.low.s - step, right.sine = piece.high.s + step;
+    if (!(left.sine > (after - 1)->sine && right.sine < after->sine)) continue;
+    for (GatheredRay* ray : {&left, &middle, &right}) ray->begin = ray->end = after->begin;
+    Cast(tree, receiver, Sparing(rays), own(), cancellation, left, cast);
+    Cast(tree, receiver, Sparing(rays), own(), cancellation, right, cast);
+    middle.sine = (piece.low.s + piece.high.s) / 2;
+    middle.cosine = CosineOf(middle.sine);
+    middle.radiance = tree.Radiance(piece.middle, piece.toward, Sparing(rays), own(), cancellation, cast);
+    middle.element = piece.element;
+    middle.to = piece.middle.position - receiver.position;
+    middle.normal = Dot(piece.middle.normal, piece.toward) < 0 ? piece.middle.normal : -piece.middle.normal;
+    middle.break_before = piece.low;
+    right.break_before = piece.high;
+    gathered.insert(after, {left, middle, right});
   }
 }
 
@@ -60,29 +100,38 @@ void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t r
                   const Cancellation& cancellation, std::vector<GatheredRay>& gathered, double& cast) {
   constexpr int kMostLooks = 8;  // Between two rays.
   const EndFinder ends(tree.caster().scene(), receiver);
+  LookAtEdgeOnPieces(tree, receiver, rays, key, cancellation, gathered, cast);
   // The horizon is a neighbour too: something may end just above it.
   GatheredRay left, right;
   left.sine = left.begin = left.end = -1, right.sine = right.begin = right.end = 1;
-  gathered.insert(gathered.begin(), left);
-  gathered.push_back(right);
   std::vector<GatheredRay> all;
-  all.reserve(2 * gathered.size());
+  all.reserve(gathered.size() + gathered.size() / 2 + kMostLooks);
   std::vector<GatheredRay> later;  // Those found on the way from the ray after to the ray before, the last one first.
-  for (std::size_t k = 0; k < gathered.size(); ++k) {
-    all.push_back(gathered[k]);
-    if (k + 1 == gathered.size()) break;
-    GatheredRay after = gathered[k + 1];
+  for (std::size_t k = 0; k <= gathered.size(); ++k) {
+    const bool last = k == gathered.size();
+    if (k > 0) all.push_back(gathered[k - 1]);
+    const GatheredRay& next = last ? right : gathered[k];
+    // Where they meet one surface, or what lies between is known, there is nothing to look for.
+    if (next.break_before || (k > 0 && all.back().element == next.element)) continue;
+    const double end_before = k > 0 ? all.back().end : left.end;
+    GatheredRay after = next;
     later.clear();
     for (int look = 0; look < kMostLooks; ++look) {
-      const std::optional<Edge> end = ends.Between(all.back(), after);
+      const GatheredRay& before = all.empty() ? left : all.back();
+      const std::optional<Edge> end = ends.Between(before, after);
       if (!end) break;
-      const bool forward = all.back().InverseDistance() >= after.InverseDistance();
+      const bool forward = before.InverseDistance() >= after.InverseDistance();
+      if (EndsAt(tree.caster().scene(), (forward ? after : before).element, *end)) {
+        // A corner: there is nothing between its sides.
+        (later.empty() && !last ? gathered[k] : after).break_before = end;
+        break;
+      }
       GatheredRay past;
-      past.begin = past.end = gathered[k].end;
+      past.begin = past.end = end_before;
       // As far beyond the end as coordinates are sure of.
       const double step = 4 * tree.caster().scene().touch_distance() * std::max(end->q, 1.0);
       past.sine = end->s + (forward ? step : -step);
-      if (!(past.sine > all.back().sine && past.sine < after.sine)) break;
+      if (!(past.sine > before.sine && past.sine < after.sine)) break;
       Cast(tree, receiver, Sparing(rays),
            ChildKey(key, kPast + (std::uint64_t{k} << 8) + static_cast<std::uint64_t>(look)), cancellation, past, cast);
       if (forward) {
@@ -93,15 +142,15 @@ void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t r
         later.push_back(after);
         after = past;
       }
-      if (all.back().element == after.element) break;
+      if ((all.empty() ? left : all.back()).element == after.element) break;
     }
     if (!later.empty()) {
       all.push_back(after);
       while (later.size() > 1) all.push_back(later.back()), later.pop_back();
-      gathered[k + 1].break_before = later.front().break_before;
+      if (!last) gathered[k].break_before = later.front().break_before;
     }
   }
-  gathered.assign(all.begin() + 1, all.end() - 1);
+  gathered.swap(all);
 }
 
 Spectrum EmittedToward(const Scene& scene, const Receiver& receiver, const GatheredRay& ray) {
@@ -119,9 +168,12 @@ Spectrum IrradianceOf(const std::vector<GatheredRay>& gathered) {
 Spectrum RotationOf(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
                     const Cancellation& cancellation, const std::vector<GatheredRay>& gathered, double& cast) {
   Spectrum sum;
+  double high = CosineOf(gathered.front().begin);
   for (std::size_t k = 0; k < gathered.size(); ++k) {
     const GatheredRay& ray = gathered[k];
-    const double low = CosineOf(ray.begin), high = CosineOf(ray.end);
+    // A stretch begins where the one before ends.
+    const double low = high;
+    high = CosineOf(ray.end);
     if (k == 0 || k + 1 == gathered.size()) {
       // Evenly among the cosines of the stretch.
       const double side = k == 0 ? -1 : 1, border = k == 0 ? high : low;

@@ -38,8 +38,8 @@ void GatherHemicircle(const RayTree& tree, const Receiver& receiver, std::uint32
 
 // For derivatives: where neighbouring rays meet different surfaces and the nearer one ends between them, looks past its
 // end for what lies behind, with a ray that stands for no stretch; and goes on so beyond what that finds. Light that
-// shows in a gap narrower than a stretch is found. (Li et al. 2018, "Differentiable Monte Carlo ray tracing through
-// edge sampling".)
+// shows in a gap narrower than a stretch is found. So are straight pieces that are seen edge-on. (Li et al. 2018,
+// "Differentiable Monte Carlo ray tracing through edge sampling".)
 void LookPastEnds(const RayTree& tree, const Receiver& receiver, std::uint32_t rays, std::uint64_t key,
                   const Cancellation& cancellation, std::vector<GatheredRay>& gathered, double& cast);
 

@@ -37,6 +37,44 @@ TEST(HonestRenderingTest, StatedErrorsTellTheTruth) {
   EXPECT_FALSE(wrong.Unbiased()) << "2 % more light must be noticed";
 }
 
+// As few paths as there can be, of which few are long: 4 walls of 32 points, 20 seeds.
+TEST(HonestRenderingTest, SixteenPathsKnowTheirErrorFromTheirNeighbours) {
+  const auto scene = SquareRoom({.reflectance = {0.8}, .radiance = {1}}, 32).Build();
+  HonestErrors errors;
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    const Ended ended = Render(scene, Sampled(16, seed));
+    for (const ProbeField& probe : ended.field->probes) {
+      for (std::size_t i = 0; i < probe.irradiance.size(); ++i) {
+        errors.Add(probe.irradiance[i], 10, probe.standard_error[i]);
+      }
+    }
+  }
+  EXPECT_EQ(errors.count(), 2560u);
+  EXPECT_TRUE(errors.RightSize()) << errors.MeanSquareZ();
+}
+
+// A slit in the roof of a black room, which most rays miss: 32 points, 20 seeds. What none found is in the error.
+TEST(HonestRenderingTest, SkyThatNoPathFoundIsInTheError) {
+  SceneMaker maker;
+  maker.Polyline("room", {{-0.01, 1}, {-1, 1}, {-1, 0}, {1, 0}, {1, 1}, {0.01, 1}}, false, {.reflectance = {0}});
+  maker.Environment({5});
+  for (int i = 0; i < 32; ++i) maker.PointProbe({-0.97 + 0.06 * i, 0}, {0, 1});
+  const auto scene = maker.Build();
+  Settings exact;
+  exact.method = Method::kExact;
+  exact.max_bounces = 0;
+  const std::shared_ptr<const Field> truth = Render(scene, exact).field;
+  HonestErrors errors;
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    const Ended ended = Render(scene, Sampled(16, seed));
+    for (std::size_t p = 0; p < ended.field->probes.size(); ++p) {
+      const ProbeField& probe = ended.field->probes[p];
+      errors.Add(probe.irradiance[0], truth->probes[p].irradiance[0], probe.standard_error[0]);
+    }
+  }
+  EXPECT_LT(errors.MeanSquareZ(), 1.5);
+}
+
 // A furnace for each channel: E = 2 Le / (1 - rho).
 TEST(HonestRenderingTest, ChannelsAreIndependent) {
   const std::vector<double> reflectance = {0.2, 0.5, 0.7};

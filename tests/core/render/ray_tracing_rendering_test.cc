@@ -97,6 +97,50 @@ TEST(RayTracingTest, GradientIsThatOfTheIrradiance) {
 
 // A turning normal: irradiance is a function of it alone whose first two harmonics tell the derivative, found by path
 // tracing at normals aside. Near a corner, where what the horizon shows varies along the wall.
+// A plate that points see edge-on, exactly or nearly, so that no ray meets it, or few do: as the points move on, its
+// lit side or its dark one comes into sight. In direct light the gradient is exact; of what is reflected it has errors.
+TEST(RayTracingTest, GradientKnowsPiecesThatAreSeenEdgeOn) {
+  SceneMaker maker;
+  maker.Polyline("room", {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, true, {.reflectance = {0.5}});
+  maker.Segment("lamp", {0.8, 0.95}, {0.2, 0.95}, {.reflectance = {0}, .radiance = {3}});
+  maker.Segment("plate", {0.3, 0.45}, {0.7, 0.45}, {.reflectance = {0.8}, .radiance = {0.5}});
+  for (const double y : {0.43, 0.449, 0.45, 0.4501, 0.47}) {
+    maker.PointProbe({0, y}, {1, 0});
+    maker.PointProbe({1, y}, {-1, 0});
+  }
+  const auto scene = maker.Build();
+  for (const Formulation formulation : {Formulation::kStratified, Formulation::kPolyline}) {
+    for (const bool direct : {true, false}) {
+      Settings truth_settings, settings = Branching(1024);
+      truth_settings.method = direct ? Method::kExact : Method::kReference;
+      truth_settings.derivatives = settings.derivatives = Derivatives::kGradient;
+      settings.formulation = formulation;
+      if (direct) truth_settings.max_bounces = settings.max_bounces = 0;
+      const std::shared_ptr<const Field> truth = Render(scene, truth_settings).field;
+      const std::shared_ptr<const Field> rays = Render(scene, settings).field;
+      for (std::size_t p = 0; p < truth->probes.size(); ++p) {
+        const ProbeField &a = rays->probes[p], &b = truth->probes[p];
+        // 20 values, 4 times: one of t_15 is beyond 6 in 10^5.
+        EXPECT_NEAR(a.gradient[0], b.gradient[0], direct ? 1e-9 : 6 * a.gradient_error[0]) << p << direct;
+        EXPECT_LT(a.gradient_error[0], 0.5);
+      }
+    }
+  }
+}
+
+TEST(RayTracingTest, DerivativesTakeFewRaysMore) {
+  SceneMaker maker = SquareRoom({.reflectance = {0.5}}, 4);
+  maker.Segment("lamp", {0.3, 0.9}, {-0.3, 0.9}, {.radiance = {3}});
+  maker.Polyline("box", {{0.1, -0.5}, {0.1, 0}, {-0.4, 0}, {-0.4, -0.5}}, true, {.reflectance = {0.5}});
+  const auto scene = maker.Build();
+  Settings settings = Branching(256);
+  settings.max_bounces = 3;
+  settings.derivatives = Derivatives::kNone;
+  const double alone = Render(scene, settings).field->rays;
+  settings.derivatives = Derivatives::kGradient;
+  EXPECT_LT(Render(scene, settings).field->rays, 1.105 * alone);
+}
+
 TEST(RayTracingTest, RotationIsThatOfTheIrradiance) {
   SceneMaker maker;
   maker.Segment("floor", {0, 0}, {2, 0}, {.reflectance = {0.6}})

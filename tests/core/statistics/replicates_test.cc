@@ -92,6 +92,70 @@ TEST(EstimateMeanTest, EqualValuesHaveTheErrorOfRounding) {
   EXPECT_EQ(EstimateMean(values, 0).StandardError(), 0);
 }
 
+// One path of 20 is 20 times as bright. Of 16 values each, the variance of 33 points together is right where each
+// point's own is far too small whenever nothing bright was met.
+TEST(NearbyVariancesTest, PointsThatAreAlikeShareTheirVariance) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> uniform;
+  constexpr int kPoints = 33;
+  HonestErrors alone, together;
+  double share = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::array<Values, kPoints> points;
+    NearbyVariances variances;
+    for (Values& values : points) {
+      for (double& value : values) value = uniform(random) + (uniform(random) < 0.05 ? 20 : 0);
+      variances.Add(EstimateMean(Half(values, 0), 0).variance * kHalfReplicates,
+                    EstimateMean(Half(values, 1), 0).variance * kHalfReplicates);
+    }
+    const NearbyVariance nearby = variances.Result();
+    share += nearby.share / 400;
+    for (const Values& values : points) {
+      constexpr Missable kSomething{1e-9, 1e-9};
+      const MeanEstimate own = EstimateMean(values, kSomething), pooled = EstimateMean(values, kSomething, nearby);
+      alone.Add(own.mean, 1.5, own.StandardError());
+      together.Add(pooled.mean, 1.5, pooled.StandardError());
+    }
+  }
+  EXPECT_LT(share, 0.2);
+  EXPECT_GT(alone.MeanSquareZ(), 3);
+  // 13,200 values, whose squares have a variance of kurtosis - 1 = 2.9 or so: 5 standard deviations are 0.08; and 0.05
+  // for variances that 33 points tell.
+  EXPECT_NEAR(together.MeanSquareZ(), 1, 0.13);
+}
+
+// Every eighth point has ten times the spread: it keeps it, and the others theirs.
+TEST(NearbyVariancesTest, PointsThatDifferKeepTheirOwn) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  constexpr int kPoints = 32;
+  HonestErrors wide, narrow;
+  for (int i = 0; i < 400; ++i) {
+    std::array<Values, kPoints> points;
+    NearbyVariances variances;
+    for (int p = 0; p < kPoints; ++p) {
+      Values& values = points[static_cast<std::size_t>(p)];
+      for (double& value : values) value = (p % 8 == 0 ? 10 : 1) * normal(random);
+      variances.Add(EstimateMean(Half(values, 0), 0).variance * kHalfReplicates,
+                    EstimateMean(Half(values, 1), 0).variance * kHalfReplicates);
+    }
+    for (int p = 0; p < kPoints; ++p) {
+      const MeanEstimate estimate =
+          EstimateMean(points[static_cast<std::size_t>(p)], Missable{1e-9, 1e-9}, variances.Result());
+      (p % 8 == 0 ? wide : narrow).Add(estimate.mean, 0, estimate.StandardError());
+    }
+  }
+  EXPECT_LT(wide.MeanSquareZ(), 1.3);
+  EXPECT_GT(wide.MeanSquareZ(), 0.8);
+  EXPECT_LT(narrow.MeanSquareZ(), 1.1);
+}
+
+TEST(NearbyVariancesTest, FewPointsTellNothing) {
+  NearbyVariances variances;
+  for (int i = 0; i < 3; ++i) variances.Add(1, 2);
+  EXPECT_EQ(variances.Result().share, 1);
+}
+
 TEST(RelativeErrorTest, DarkPointsAreMeasuredByTheFloor) {
   EXPECT_EQ(RelativeError(2, 0.5, 0.1), 0.25);
   EXPECT_EQ(RelativeError(0.01, 0.5, 0.1), 5);
