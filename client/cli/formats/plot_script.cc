@@ -160,8 +160,8 @@ std::string PlotScript(const v1::RenderResult& result, PlotForm form) {
       PlotText(result.scene().empty() ? "irradiance" : result.scene()) + ".'}' at screen 0.02, screen " + screen(24) +
       " left\n" + "set label 2 " + PlotText(Subtitle(result)) + " at screen 0.02, screen " + screen(50) +
       " left textcolor rgb '#606060'\n" + "set key at screen 0.975, screen " + screen(14) +
-      " right top horizontal Left reverse maxrows 3 samplen 1.8 spacing 1.2 width " +
-      LegendWidth(panels) + " textcolor rgb '#404040'\n";
+      " right top horizontal Left reverse maxrows 3 samplen 1.8 spacing 1.2 width " + LegendWidth(panels) +
+      " textcolor rgb '#404040'\n";
 
   int top = kHead;
   for (std::size_t i = 0; i < panels.size(); ++i) {

@@ -91,7 +91,8 @@ void AddCachingExtras(CLI::App& app, SettingsOptions& settings) {
 }
 
 void AddPhotons(CLI::App& app, SettingsOptions& settings) {
-  app.add_option("--photons", settings.photons, "of photon-mapping, in all (default 65536)")->type_name("N");
+  app.add_option("--photons", settings.photons, "of photon-mapping and from-photon-map, in all (default 65536)")
+      ->type_name("N");
   app.add_option("--final-gather", settings.final_gather,
                  "true: rays look photons up; false: their density at the points (default: true if something reflects)")
       ->type_name("BOOL");

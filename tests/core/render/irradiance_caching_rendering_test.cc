@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/render/plan.h"
+#include "tests/core/render/caching_support.h"
 #include "tests/support/transport/mistakes.h"
 #include "tests/support/transport/render.h"
 #include "tests/support/transport/scene_maker.h"
@@ -21,66 +22,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
-
-Settings Caching() {
-  Settings settings;
-  settings.method = Method::kIrradianceCaching;
-  return settings;
-}
-
-// The largest and the root mean square difference from the reference over all probes, relative to the irradiance or 1 %
-// of its mean.
-struct Difference {
-  double largest = 0;
-  double rms = 0;
-};
-
-Difference FromReference(const std::shared_ptr<const Scene>& scene, const Settings& settings) {
-  Settings truth;
-  truth.method = Method::kReference;
-  truth.derivatives = Derivatives::kNone;
-  truth.max_bounces = settings.max_bounces;
-  const auto expected = Render(scene, truth).field;
-  const auto field = Render(scene, settings).field;
-  Difference difference;
-  double count = 0;
-  for (std::size_t p = 0; p < field->probes.size(); ++p) {
-    EXPECT_EQ(field->probes[p].irradiance.size(), expected->probes[p].irradiance.size());
-    const std::vector<double>& truths = expected->probes[p].irradiance;
-    const double mean = std::accumulate(truths.begin(), truths.end(), 0.0) / static_cast<double>(truths.size());
-    for (std::size_t i = 0; i < truths.size(); ++i) {
-      const double off = std::abs(field->probes[p].irradiance[i] - truths[i]) / std::max(truths[i], 0.01 * mean);
-      difference.largest = std::max(difference.largest, off);
-      difference.rms += off * off;
-      ++count;
-    }
-  }
-  difference.rms = std::sqrt(difference.rms / count);
-  return difference;
-}
-
-// Of the points: where the error is more than so many times its estimate.
-double ShareAboveEstimate(const Field& field, const Field& truth, double times) {
-  double above = 0, count = 0;
-  for (std::size_t p = 0; p < field.probes.size(); ++p) {
-    for (std::size_t i = 0; i < field.probes[p].irradiance.size(); ++i, ++count) {
-      const double error = std::abs(field.probes[p].irradiance[i] - truth.probes[p].irradiance[i]);
-      // What the reference is off by, 1e-6, aside.
-      if (error > times * field.probes[p].estimated_error[i] + 1e-6 * truth.probes[p].irradiance[i]) ++above;
-    }
-  }
-  return above / count;
-}
-
-// A room with a lamp, a blocker, a disc, and a wall that stands on the floor and lets light through above.
-SceneMaker DividedRoom(std::uint32_t points = 60) {
-  SceneMaker maker = SquareRoom({.reflectance = {0.6}}, points);
-  maker.Segment("lamp", {-0.4, 0.9}, {-0.8, 0.85}, {.radiance = {5}});
-  maker.Segment("divider", {0.1, -1}, {0.1, 0.4}, {.reflectance = {0.3}});
-  maker.Segment("blocker", {-0.7, 0.1}, {-0.4, 0.15}, {.reflectance = {0.5}});
-  maker.Arc("disc", {{0.5, 0.3}, 0.15, 0, -6.283185307179586}, {.reflectance = {0.7}});
-  return maker;
-}
 
 TEST(IrradianceCachingRenderingTest, AgreesWithTheReference) {
   const auto scene = DividedRoom().Build();
@@ -170,70 +111,6 @@ TEST(IrradianceCachingRenderingTest, RaysTellWhatPanelsTell) {
   const Difference difference = FromReference(scene, settings);
   EXPECT_LT(difference.rms, 0.02);
   EXPECT_LT(difference.largest, 0.3);
-}
-
-// Rays that end in a photon map, which is biased and noisy, and says so.
-TEST(IrradianceCachingRenderingTest, PhotonsTellWhatPanelsTell) {
-  const auto scene = DividedRoom().Build();
-  for (const std::optional<std::uint32_t> bounces : {std::optional<std::uint32_t>(1), std::optional<std::uint32_t>()}) {
-    Settings settings = Caching();
-    settings.max_bounces = bounces;
-    settings.gather = Gather::kPhotonMap;
-    settings.tolerance = 0.03;
-    double before = 1;
-    for (const std::uint32_t photons : {1u << 13, 1u << 18}) {
-      settings.photons = photons;
-      const Difference difference = FromReference(scene, settings);
-      EXPECT_LT(difference.rms, before / 3);
-      before = difference.rms;
-    }
-    EXPECT_LT(before, 0.015);
-    Settings truth;
-    truth.method = Method::kReference;
-    truth.derivatives = Derivatives::kNone;
-    truth.max_bounces = bounces;
-    const auto expected = Render(scene, truth).field, field = Render(scene, settings).field;
-    EXPECT_EQ(field->photons, static_cast<double>(*settings.photons));
-    EXPECT_LT(ShareAboveEstimate(*field, *expected, 2), 0.05);
-    settings.seed = 1;
-    EXPECT_NE(HashOf(*Render(scene, settings).field), HashOf(*field));
-  }
-}
-
-// Mirrors and glass, which panels cannot tell.
-TEST(IrradianceCachingRenderingTest, PhotonsTellAboutAllMaterials) {
-  const auto scene = RoomOfAllMaterials().Build();
-  Settings settings = Caching();
-  settings.gather = Gather::kPhotonMap;
-  settings.tolerance = 0.05;
-  const auto field = Render(scene, settings).field;
-  const auto expected = Render(scene, Sampled(512)).field;
-  double squares = 0, sum = 0;
-  for (std::size_t p = 0; p < field->probes.size(); ++p) {
-    for (std::size_t i = 0; i < field->probes[p].irradiance.size(); ++i) {
-      const double truth = expected->probes[p].irradiance[i], off = field->probes[p].irradiance[i] - truth;
-      squares += off * off, sum += truth * truth;
-    }
-  }
-  EXPECT_LT(std::sqrt(squares / sum), 0.1);
-}
-
-TEST(IrradianceCachingRenderingTest, SettingsOfAPhotonMapThatMakeNoSenseAreMistakes) {
-  Settings settings = Caching();
-  settings.photons = 100;
-  EXPECT_THAT(Mistakes(*DividedRoom().Build(), settings),
-              UnorderedElementsAre(HasSubstr("settings.photons: applies to irradiance-caching where it gathers")));
-  settings.gather = Gather::kPhotonMap;
-  EXPECT_THAT(Mistakes(*DividedRoom().Build(), settings), testing::IsEmpty());
-  for (const std::uint32_t photons : {0u, 1u << 30}) {
-    settings.photons = photons;
-    EXPECT_THAT(Mistakes(*DividedRoom().Build(), settings),
-                UnorderedElementsAre(HasSubstr("settings.photons: is " + std::to_string(photons))));
-  }
-  settings.photons.reset();
-  settings.max_bounces = 0;
-  EXPECT_THAT(Mistakes(*DividedRoom().Build(), settings),
-              UnorderedElementsAre(HasSubstr("settings.gather: is from-photon-map, but nothing is reflected")));
 }
 
 // The divider parts light from dark: no record of one side counts on the other.
