@@ -36,7 +36,7 @@ PointBlocks::PointBlocks(const PointSampler& sampler, std::size_t points)
       doubts_(points * sampler.channels()),
       ranges_(points * 2 * sampler.channels()),
       variances_(points * 2 * sampler.channels()),
-      spreads_(points * 2 * sampler.channels() * 3) {}
+      spreads_(points * 2 * sampler.channels()) {}
 
 void PointBlocks::UpdateVariances(std::size_t point) {
   const double samples = static_cast<double>(blocks(point)) * kHalfReplicates;
@@ -49,11 +49,8 @@ void PointBlocks::UpdateVariances(std::size_t point) {
       std::array<double, kHalfReplicates> sums;
       for (std::size_t r = 0; r < kHalfReplicates; ++r)
         sums[r] = trees_[point].Total(c * kReplicates + half * kHalfReplicates + r);
-      const double scale = 1 / static_cast<double>(blocks(point));  // Of the sum of a replicate to a sample.
-      constexpr std::size_t kQuarter = kHalfReplicates / 2;
-      spreads_[at * 3] = scale * VarianceOf(sums);
-      for (std::size_t q = 0; q < 2; ++q)
-        spreads_[at * 3 + 1 + q] = scale * VarianceOf(std::span(sums).subspan(q * kQuarter, kQuarter));
+      // Of the sum of a replicate to one sample.
+      spreads_[at] = VarianceOf(sums) / static_cast<double>(blocks(point));
     }
   }
 }

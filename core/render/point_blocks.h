@@ -47,12 +47,9 @@ class PointBlocks {
     return variances_[(point * 2 + half) * channels_ + channel];
   }
 
-  // The variance of one sample of a replicate, as the means of replicates tell it, those of a half or of a quarter.
+  // The variance of one sample of a replicate, as the means of the replicates of one half tell it.
   double ReplicateVariance(std::size_t point, std::size_t half, std::size_t channel) const {
-    return spreads_[((point * 2 + half) * channels_ + channel) * 3];
-  }
-  double QuarterVariance(std::size_t point, std::size_t half, std::size_t channel, std::size_t quarter) const {
-    return spreads_[((point * 2 + half) * channels_ + channel) * 3 + 1 + quarter];
+    return spreads_[(point * 2 + half) * channels_ + channel];
   }
 
   // The halves [first, last) of the replicates.
@@ -130,7 +127,7 @@ class PointBlocks {
   std::vector<PointSampler::Doubt> doubts_;  // Point, then channel.
   std::vector<SampleRange> ranges_;          // Point, then half, then channel.
   std::vector<double> variances_;            // Likewise.
-  std::vector<double> spreads_;              // Likewise; of each the half's and its two quarters'.
+  std::vector<double> spreads_;              // Likewise: ReplicateVariance.
   double total_blocks_ = 0;
   double rays_ = 0;
   // How to cut work: measured, without influence on sums.

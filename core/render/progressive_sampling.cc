@@ -222,17 +222,12 @@ std::pair<std::size_t, std::size_t> ProgressiveSampling::Neighbours(std::size_t 
           std::min(probe_ends_[probe], point + kNeighbours + 1)};
 }
 
-NearbyVariance ProgressiveSampling::NearbyAt(std::size_t point, std::size_t channel, Halves halves) const {
+NearbyVariance ProgressiveSampling::NearbyAt(std::size_t point, std::size_t channel) const {
   NearbyVariances nearby;
   const auto [begin, end] = Neighbours(point);
   for (std::size_t p = begin; p < end; ++p) {
     if (blocks_.blocks(p) == 0) continue;
-    if (halves.count() == 2) {
-      nearby.Add(blocks_.ReplicateVariance(p, 0, channel), blocks_.ReplicateVariance(p, 1, channel));
-    } else {
-      nearby.Add(blocks_.QuarterVariance(p, halves.first, channel, 0),
-                 blocks_.QuarterVariance(p, halves.first, channel, 1));
-    }
+    nearby.Add(blocks_.ReplicateVariance(p, 0, channel), blocks_.ReplicateVariance(p, 1, channel));
   }
   return nearby.Result();
 }
@@ -261,8 +256,11 @@ Missable ProgressiveSampling::MissableAt(std::size_t point, std::size_t channel,
 
 CrossedHalves::HalfEstimate ProgressiveSampling::EstimateOf(std::size_t point, Halves halves) const {
   CrossedHalves::HalfEstimate estimates;
-  for (std::size_t c = 0; c < channels(); ++c)
-    estimates.push_back(blocks_.Estimate(point, c, halves, MissableAt(point, c, halves), NearbyAt(point, c, halves)));
+  for (std::size_t c = 0; c < channels(); ++c) {
+    // Where points stop by themselves each goes by its own: one among noisier ones would go on for their sake.
+    const NearbyVariance nearby = halves.count() == 2 ? NearbyAt(point, c) : NearbyVariance{};
+    estimates.push_back(blocks_.Estimate(point, c, halves, MissableAt(point, c, halves), nearby));
+  }
   return estimates;
 }
 

@@ -92,7 +92,7 @@ class ProgressiveSampling {
 
   // What samples may have missed at the point, as its neighbours tell by the same halves of their replicates.
   Missable MissableAt(std::size_t point, std::size_t channel, Halves halves) const;
-  NearbyVariance NearbyAt(std::size_t point, std::size_t channel, Halves halves) const;
+  NearbyVariance NearbyAt(std::size_t point, std::size_t channel) const;
   // The points [first, last) of the same probe that are near.
   std::pair<std::size_t, std::size_t> Neighbours(std::size_t point) const;
   CrossedHalves::HalfEstimate EstimateOf(std::size_t point, Halves halves) const;

@@ -48,7 +48,8 @@ MeanEstimate EstimateMean(std::span<const double> values, const Missable& missab
     const double most = missable.largest * std::sqrt(2 / ((n + 2) * (n + 3)));
     const double frequent = share < 1 ? std::min(missable.variance, others) : missable.variance;
     const double doubt = std::clamp(std::sqrt(frequent), missable.share * most, most);
-    estimate.unresolved = std::sqrt(std::max(doubt * doubt - estimate.variance, 0.0));
+    // What neighbours tell of the variance has the doubt in it.
+    estimate.unresolved = share < 1 ? std::sqrt(std::max(doubt * doubt - estimate.variance, 0.0)) : doubt;
   }
   return estimate;
 }
