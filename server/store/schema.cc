@@ -49,6 +49,19 @@ CREATE TABLE scenes(
 );
 )sql";
 
+constexpr char kUsers[] = R"sql(
+CREATE TABLE users(
+  name TEXT PRIMARY KEY,
+  role TEXT NOT NULL CHECK(role IN ('student', 'grader', 'instructor', 'admin')),
+  token_sha256 TEXT UNIQUE  -- Null: revoked.
+) WITHOUT ROWID;
+CREATE TABLE memberships(
+  user TEXT NOT NULL REFERENCES users,
+  group_name TEXT NOT NULL,
+  PRIMARY KEY(user, group_name)
+) WITHOUT ROWID;
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -59,7 +72,7 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs, kScenes};
+  static const std::vector<std::string> kMigrations = {kJobs, kScenes, kUsers};
   return kMigrations;
 }
 

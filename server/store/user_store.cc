@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/user_store.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+
+#include "server/store/error.h"
+#include "server/store/random_bytes.h"
+#include "server/store/sha256.h"
+
+namespace flatlight {
+namespace {
+
+constexpr std::array<std::pair<Role, std::string_view>, 4> kRoles = {{
+    {Role::kStudent, "student"},
+    {Role::kGrader, "grader"},
+    {Role::kInstructor, "instructor"},
+    {Role::kAdmin, "admin"},
+}};
+constexpr std::size_t kMostNameBytes = 64;
+
+// The beginning lets those who search for leaked secrets know one.
+std::string MakeToken() {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string token = "flatlight_";
+  for (const unsigned char byte : RandomBytes<32>()) {
+    token += kDigits[byte >> 4];
+    token += kDigits[byte & 15];
+  }
+  return token;
+}
+
+bool IsName(std::string_view name) {
+  const auto is_alphanumeric = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
+  if (name.empty() || name.size() > kMostNameBytes || !is_alphanumeric(name.front())) return false;
+  return std::all_of(name.begin(), name.end(),
+                     [&](char c) { return is_alphanumeric(c) || c == '.' || c == '_' || c == '-' || c == '@'; });
+}
+
+absl::Status CheckName(const std::string& place, const std::string& what, const std::string& name) {
+  if (IsName(name)) return absl::OkStatus();
+  return MakeError(absl::StatusCode::kInvalidArgument, "USER_INVALID",
+                   place + what + " \"" + name.substr(0, kMostNameBytes) +
+                       "\" must be 1 to 64 of a-z, 0-9 and . _ - @, and begin with a letter or digit");
+}
+
+}  // namespace
+
+std::string_view RoleName(Role role) { return kRoles[static_cast<std::size_t>(role)].second; }
+
+std::optional<Role> RoleOf(std::string_view name) {
+  for (const auto& [role, its_name] : kRoles) {
+    if (name == its_name) return role;
+  }
+  return std::nullopt;
+}
+
+absl::StatusOr<std::vector<std::string>> UserStore::Add(const std::vector<User>& users,
+                                                        const std::vector<std::string>& places) {
+  Transaction transaction(database_);
+  if (absl::Status begun = transaction.Begin(); !begun.ok()) return begun;
+  std::vector<std::string> tokens;
+  for (std::size_t i = 0; i < users.size(); ++i) {
+    auto token = AddOne(users[i], i < places.size() ? places[i] + ": " : "");
+    if (!token.ok()) return token.status();
+    tokens.push_back(*std::move(token));
+  }
+  if (absl::Status committed = transaction.Commit(); !committed.ok()) return committed;
+  return tokens;
+}
+
+absl::StatusOr<std::string> UserStore::AddOne(const User& user, const std::string& place) {
+  if (absl::Status named = CheckName(place, "the user name", user.name); !named.ok()) return named;
+  std::string token = MakeToken();
+  Statement insert = database_.Prepare(
+      "INSERT INTO users(name, role, token_sha256) VALUES(?, ?, ?) ON CONFLICT(name) DO UPDATE SET "
+      "role = excluded.role, token_sha256 = excluded.token_sha256 WHERE users.token_sha256 IS NULL");
+  insert.Bind(std::string_view(user.name)).Bind(RoleName(user.role));
+  if (absl::Status done = insert.Bind(std::string_view(Sha256Of(token))).Run(); !done.ok()) return done;
+  if (database_.changed_rows() == 0) {
+    return MakeError(absl::StatusCode::kAlreadyExists, "USER_EXISTS",
+                     place + "there is a user \"" + user.name + "\" already: revoke it first to give it a new token");
+  }
+  Statement clear = database_.Prepare("DELETE FROM memberships WHERE user = ?");
+  if (absl::Status done = clear.Bind(std::string_view(user.name)).Run(); !done.ok()) return done;
+  for (const std::string& group : std::set<std::string>(user.groups.begin(), user.groups.end())) {
+    if (absl::Status named = CheckName(place, "the group name", group); !named.ok()) return named;
+    Statement join = database_.Prepare("INSERT INTO memberships(user, group_name) VALUES(?, ?)");
+    absl::Status done = join.Bind(std::string_view(user.name)).Bind(std::string_view(group)).Run();
+    if (!done.ok()) return done;
+  }
+  return token;
+}
+
+absl::StatusOr<std::vector<std::string>> UserStore::GroupsOf(const std::string& name) {
+  Statement rows = database_.Prepare("SELECT group_name FROM memberships WHERE user = ? ORDER BY group_name");
+  rows.Bind(std::string_view(name));
+  std::vector<std::string> groups;
+  while (true) {
+    const auto row = rows.Step();
+    if (!row.ok()) return row.status();
+    if (!*row) return groups;
+    groups.push_back(rows.Bytes(0));
+  }
+}
+
+absl::StatusOr<std::vector<User>> UserStore::List() {
+  Statement rows = database_.Prepare("SELECT name, role, token_sha256 IS NULL FROM users ORDER BY name");
+  std::vector<User> users;
+  while (true) {
+    const auto row = rows.Step();
+    if (!row.ok()) return row.status();
+    if (!*row) return users;
+    auto groups = GroupsOf(rows.Bytes(0));
+    if (!groups.ok()) return groups.status();
+    const auto role = RoleOf(rows.Bytes(1)).value_or(Role::kStudent);
+    users.push_back({rows.Bytes(0), role, *std::move(groups), rows.Integer(2) != 0});
+  }
+}
+
+absl::Status UserStore::Revoke(const std::string& name) {
+  Statement revoke = database_.Prepare("UPDATE users SET token_sha256 = NULL WHERE name = ?");
+  if (absl::Status done = revoke.Bind(std::string_view(name)).Run(); !done.ok()) return done;
+  if (database_.changed_rows() > 0) return absl::OkStatus();
+  return MakeError(absl::StatusCode::kNotFound, "USER_NOT_FOUND", "there is no user \"" + name + "\"");
+}
+
+absl::StatusOr<User> UserStore::Authenticate(std::string_view token) {
+  // What is compared is a hash, whose timing tells nothing of the token.
+  Statement rows = database_.Prepare("SELECT name, role FROM users WHERE token_sha256 = ?");
+  const auto row = rows.Bind(std::string_view(Sha256Of(token))).Step();
+  if (!row.ok()) return row.status();
+  if (!*row) {
+    return MakeError(absl::StatusCode::kUnauthenticated, "TOKEN_INVALID",
+                     "the token is not known here, or was revoked: ask whoever runs the server for a new one");
+  }
+  auto groups = GroupsOf(rows.Bytes(0));
+  if (!groups.ok()) return groups.status();
+  return User{rows.Bytes(0), RoleOf(rows.Bytes(1)).value_or(Role::kStudent), *std::move(groups), false};
+}
+
+absl::StatusOr<bool> UserStore::HasUsers() { return database_.Prepare("SELECT 1 FROM users LIMIT 1").Step(); }
+
+}  // namespace flatlight
