@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/bench_report.h"
 
+#include <openssl/sha.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <ctime>
-#include <memory>
+#include <filesystem>
+#include <iterator>
+#include <system_error>
 
 namespace flatlight {
 namespace {
@@ -49,13 +53,15 @@ std::string MachineName() {
   return "unknown";
 }
 
-std::string CommitName() {
-  const std::unique_ptr<FILE, int (*)(FILE*)> git(popen("git describe --always --dirty 2>/dev/null", "r"), pclose);
-  std::array<char, 64> line{};
-  if (!git || !std::fgets(line.data(), line.size(), git.get())) return "unknown";
-  std::string name = line.data();
-  name.erase(name.find_last_not_of('\n') + 1);
-  return name;
+std::string BuildName() {
+  std::ifstream program("/proc/self/exe", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(program), {}};
+  if (bytes.empty()) return FLATLIGHT_VERSION;
+  std::array<unsigned char, SHA256_DIGEST_LENGTH> hash{};
+  SHA256(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), hash.data());
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), " (%02x%02x%02x%02x)", hash[0], hash[1], hash[2], hash[3]);
+  return std::string(FLATLIGHT_VERSION) + text.data();
 }
 
 std::string Short(double value) {
@@ -82,14 +88,16 @@ void BenchTable::Print() const {
 }
 
 bool BenchTable::WriteCsv(const std::string& path) const {
+  std::error_code failed;  // Then the file cannot be written either.
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path(), failed);
   std::ofstream file(path);
-  std::vector<std::string> first = {"machine", "commit"};
+  std::vector<std::string> first = {"machine", "build"};
   first.insert(first.end(), columns_.begin(), columns_.end());
   WriteRow(file, first);
   const std::string machine = MachineName();
-  const std::string commit = CommitName();
+  const std::string build = BuildName();
   for (const auto& row : rows_) {
-    std::vector<std::string> whole = {machine, commit};
+    std::vector<std::string> whole = {machine, build};
     whole.insert(whole.end(), row.begin(), row.end());
     WriteRow(file, whole);
   }

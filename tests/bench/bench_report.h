@@ -21,19 +21,21 @@ struct Quartiles {
 Quartiles QuartilesOf(std::vector<double> values);
 
 std::string MachineName();  // The processor's.
-std::string CommitName();   // Of the tree that the program is started in; "unknown" outside of one.
+// Release and commit that this program was configured at, and the beginning of its own SHA-256: an edited tree has
+// builds without number of one commit. "0.1.0+1bcd874a90e2 (5e8e3a12)".
+std::string BuildName();
 
 // Three significant digits.
 std::string Short(double value);
 
-// A table whose columns are as wide as they need, and the same rows as CSV with machine and commit in front.
+// A table whose columns are as wide as they need, and the same rows as CSV with machine and build in front.
 class BenchTable {
  public:
   explicit BenchTable(std::vector<std::string> columns) : columns_(std::move(columns)) {}
 
   void Add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
   void Print() const;
-  // False if the file could not be written.
+  // Makes the folder if there is none. False if the file could not be written.
   bool WriteCsv(const std::string& path) const;
   // Both. False, and it says so, if the file could not be written.
   bool Report(const std::string& path) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Irradiance caching against path tracing and ray tracing at equal time, in the gallery's diffuse scenes.
 //
-//   irradiance_caching [TOLERANCE [CSV]]      default: 0.01, irradiance_caching.csv
+//   irradiance_caching [TOLERANCE [CSV]]      default: 0.01, out/irradiance_caching.csv
 //
 // One thread, every method from the scene on, indexes and panels included. In each round caching goes first, and the
 // others get the processor time that it took, or what their first value at each point takes if that is longer. Errors
@@ -135,5 +135,5 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s is no tolerance in (0, 1]\n", argv[1]);
     return 2;
   }
-  return flatlight::RunAll(tolerance, argc > 2 ? argv[2] : "irradiance_caching.csv");
+  return flatlight::RunAll(tolerance, argc > 2 ? argv[2] : "out/irradiance_caching.csv");
 }

@@ -2,7 +2,7 @@
 // How the error of photon mapping falls with photons, what a final gather gains, and whether stated errors tell the
 // truth.
 //
-//   photon_mapping [CSV]      the rows go to CSV (default: photon_mapping.csv) as well
+//   photon_mapping [CSV]      the rows go to CSV (default: out/photon_mapping.csv) as well
 //
 // For each lambertian scene of the gallery and number of photons: many seeds, each compared with the reference. RMS
 // errors are over seeds and points, relative to the mean irradiance. "bias" is that of the mean over seeds, less what
@@ -145,5 +145,5 @@ int Run(const std::string& csv, const std::string& only) {
 }  // namespace flatlight
 
 int main(int argc, char** argv) {
-  return flatlight::Run(argc > 1 ? argv[1] : "photon_mapping.csv", argc > 2 ? argv[2] : "");
+  return flatlight::Run(argc > 1 ? argv[1] : "out/photon_mapping.csv", argc > 2 ? argv[2] : "");
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much a path is worth: 1 / (variance x processor time) and 1 / (variance x rays) of path tracing, scene by scene.
 //
-//   sampling_efficiency [CSV [SCENE]]      the rows go to CSV (default: sampling_efficiency.csv) as well; with SCENE,
+//   sampling_efficiency [CSV [SCENE]]      the rows go to CSV (default: out/sampling_efficiency.csv) as well; with
+//   SCENE,
 //                                          only scenes whose name has it in it
 //
 // z^2 is the mean square of (value - truth) / stated error: above 1, errors are stated too small.
@@ -111,5 +112,5 @@ int Run(const std::string& csv, const std::string& only) {
 }  // namespace flatlight
 
 int main(int argc, char** argv) {
-  return flatlight::Run(argc > 1 ? argv[1] : "sampling_efficiency.csv", argc > 2 ? argv[2] : "");
+  return flatlight::Run(argc > 1 ? argv[1] : "out/sampling_efficiency.csv", argc > 2 ? argv[2] : "");
 }

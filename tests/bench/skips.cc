@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each skip saves, wherever it applies, and whether it changes the result; and what planning costs.
 //
-//   skips [CSV]      the rows go to CSV (default: skips.csv) as well
+//   skips [CSV]      the rows go to CSV (default: out/skips.csv) as well, those on planning to skips-planning.csv
+//   beside
 //
 // A skip is measured on every scene and setting that takes it: rendered with it and without, turn by turn, on one
 // thread, in processor time. Exit status 1 if any result changed by a bit, or if a skip applied to nothing.
@@ -10,6 +11,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <string>
@@ -199,7 +201,7 @@ std::vector<NamedScene> ScenesToPlan() {
   return scenes;
 }
 
-void MeasurePlanning(const std::string& csv) {
+bool MeasurePlanning(const std::string& csv) {
   BenchTable table({"scene", "method", "q1", "ms to plan", "q3"});
   for (const NamedScene& scene : ScenesToPlan()) {
     for (const NamedSettings& settings : {AllSettings()[0], AllSettings()[2], AllSettings()[3]}) {
@@ -213,7 +215,13 @@ void MeasurePlanning(const std::string& csv) {
       table.Add({scene.name, settings.name, Short(quartiles.lower), Short(quartiles.median), Short(quartiles.upper)});
     }
   }
-  table.Report(csv);
+  return table.Report(csv);
+}
+
+// "out/skips.csv": "out/skips-planning.csv".
+std::string PlanningCsv(const std::string& csv) {
+  const std::filesystem::path path = csv;
+  return path.parent_path() / (path.stem().string() + "-planning" + path.extension().string());
 }
 
 int Run(const std::string& csv) {
@@ -239,11 +247,10 @@ int Run(const std::string& csv) {
   }
   const bool good = bench.Report(csv);
   std::printf("\n");
-  MeasurePlanning(csv + ".planning.csv");
-  return good ? 0 : 1;
+  return MeasurePlanning(PlanningCsv(csv)) && good ? 0 : 1;
 }
 
 }  // namespace
 }  // namespace flatlight
 
-int main(int argc, char** argv) { return flatlight::Run(argc > 1 ? argv[1] : "skips.csv"); }
+int main(int argc, char** argv) { return flatlight::Run(argc > 1 ? argv[1] : "out/skips.csv"); }

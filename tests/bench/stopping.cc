@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether errors tell the truth where sampling stops by itself, and what stopping costs.
 //
-//   stopping [CSV]      the rows go to CSV (default: stopping.csv) as well
+//   stopping [CSV]      the rows go to CSV (default: out/stopping.csv) as well
 //
 // For each scene and target error: many seeds, each compared with a long rendering of the same points. z is
 // (value - truth) / error, the error being the stated one and the truth's own in quadrature: honest errors give a mean
@@ -98,4 +98,4 @@ int Run(const std::string& csv) {
 }  // namespace
 }  // namespace flatlight
 
-int main(int argc, char** argv) { return flatlight::Run(argc > 1 ? argv[1] : "stopping.csv"); }
+int main(int argc, char** argv) { return flatlight::Run(argc > 1 ? argv[1] : "out/stopping.csv"); }

@@ -123,10 +123,10 @@ ExactSolver::ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions option
   for (std::size_t e = 0; e < scene.elements().size(); ++e) {
     const ElementId id = static_cast<ElementId>(e);
     const Curve& curve = scene.curve_of(id);
-    if (options_.occlusion) {
-      emissions_.push_back({curve.radiance[0], curve.Emits(), curve.Emits() && curve.two_sided});
-    } else if (curve.Emits()) {
-      emitters_.push_back(id);
+    emissions_.push_back({curve.radiance[0], curve.Emits(), curve.Emits() && curve.two_sided});
+    if (!options_.occlusion && curve.Emits()) {
+      const Element& element = scene.element(id);
+      emitters_.push_back({element.a, element.b, static_cast<std::uint32_t>(e), element.carrier});
     }
   }
 }
@@ -154,26 +154,18 @@ ExactValue ExactSolver::Evaluate(const Receiver& receiver) {
 
 template <int kChannels>
 void ExactSolver::Add(const Receiver& receiver, ExactValue& value) {
-  if (options_.occlusion) {
-    if (view_) {
-      if (AddView<kChannels>(receiver, value)) return;
-      ++undecided_;
-    }
-    const Envelope& envelope = gatherer_.Gather(receiver);
-    if (!envelope.doubtful()) {
-      AddEnvelope<kChannels>(envelope, receiver, value);
-    } else {
-      const std::vector<Part>& parts = gatherer_.PartsInDoubt(receiver);
-      AddIntervals<kChannels>(sweep_.Run(parts, receiver), parts, receiver, value);
-    }
+  if (view_ && options_.occlusion) {
+    if (AddView<kChannels>(receiver, value)) return;
+    ++undecided_;
+  }
+  // Beside what emits, what neither emits nor hides anything leaves no edge in the sum.
+  const Envelope& envelope =
+      options_.occlusion ? gatherer_.Gather(receiver) : gatherer_.GatherAmong(emitters_, receiver);
+  if (!envelope.doubtful()) {
+    AddEnvelope<kChannels>(envelope, receiver, value);
   } else {
-    for (const ElementId emitter : emitters_) {
-      const Parts parts = PartsOf(scene_, emitter, receiver);
-      for (int i = 0; i < parts.count; ++i) {
-        single_.assign(1, parts.part[i]);
-        AddIntervals<kChannels>(sweep_.Run(single_, receiver), single_, receiver, value);
-      }
-    }
+    const std::vector<Part>& parts = gatherer_.PartsInDoubt(receiver);
+    AddIntervals<kChannels>(sweep_.Run(parts, receiver), parts, receiver, value);
   }
 }
 

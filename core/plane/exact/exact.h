@@ -102,8 +102,7 @@ class ExactSolver {
   double undecided_ = 0;
   Spectrum brightest_;               // Of all that is seen anywhere.
   std::vector<Emission> emissions_;  // By element.
-  std::vector<ElementId> emitters_;  // Where occlusion is left out.
-  std::vector<Part> single_;
+  std::vector<Bvh::Slot> emitters_;  // Where occlusion is left out.
 };
 
 }  // namespace flatlight

@@ -118,7 +118,7 @@ namespace flatlight {
 
 HWY_EXPORT(Walk);
 
-const Envelope& Gatherer::Gather(const Receiver& receiver) {
+void Gatherer::Start(const Receiver& receiver) {
   receiver_ = &receiver;
   left_handed_ = Cross(receiver.tangent, receiver.normal) < 0;
   has_own_ = receiver.element != ElementId::kNone;
@@ -126,7 +126,32 @@ const Envelope& Gatherer::Gather(const Receiver& receiver) {
   elements_.clear();
   used_parts_ = 0;
   envelope_.Start(receiver);
+}
+
+const Envelope& Gatherer::Gather(const Receiver& receiver) {
+  Start(receiver);
   HWY_DYNAMIC_DISPATCH(Walk)(*this, receiver);
+  return envelope_;
+}
+
+const Envelope& Gatherer::GatherAmong(const std::vector<Bvh::Slot>& slots, const Receiver& receiver) {
+  Start(receiver);
+  if (slots.empty()) return envelope_;
+  // From the receiver's own place on, upward or downward: in a convex room that is the order of theta, and parts that
+  // come last cost least.
+  const std::size_t count = slots.size();
+  const auto above = std::upper_bound(
+      slots.begin(), slots.end(), receiver.element,
+      [](ElementId element, const Bvh::Slot& slot) { return element < static_cast<ElementId>(slot.element); });
+  const std::size_t next = above == slots.end() ? 0 : static_cast<std::size_t>(above - slots.begin());
+  const std::size_t before = next == 0 ? count - 1 : next - 1;
+  const bool upward = Dot(receiver.tangent, slots[before].a - slots[next].a) > 0;
+  std::size_t i = upward ? next : before;
+  for (std::size_t looked_at = 0; looked_at < count; ++looked_at) {
+    if (const SightBetween* seen = See(slots[i], false)) Add(*seen);
+    i = upward ? (i + 1 == count ? 0 : i + 1) : (i == 0 ? count : i) - 1;
+  }
+  tests_ += static_cast<double>(slots.size());
   return envelope_;
 }
 

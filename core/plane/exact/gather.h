@@ -19,8 +19,10 @@ class Gatherer {
  public:
   Gatherer(const Scene& scene, const Bvh& bvh) : scene_(scene), bvh_(bvh), envelope_(scene) {}
 
-  // The result is valid until the next call.
+  // The result is valid until the next call, of either kind.
   const Envelope& Gather(const Receiver& receiver);
+  // The same, where these, in the order of their elements, are all that there is to see: the tree is not looked at.
+  const Envelope& GatherAmong(const std::vector<Bvh::Slot>& slots, const Receiver& receiver);
   // Where the last envelope is doubtful: the parts of everything that it may show.
   const std::vector<Part>& PartsInDoubt(const Receiver& receiver);
 
@@ -40,6 +42,7 @@ class Gatherer {
   void AddTests(double tests) { tests_ += tests; }
 
  private:
+  void Start(const Receiver& receiver);
   void AddParts(ElementId element);
 
   const Scene& scene_;

@@ -38,7 +38,7 @@ Machine ThisMachine() {
 #else
   const std::string compiler = std::string("GCC ") + __VERSION__;
 #endif
-  return {MachineName(), VectorUnit(), compiler, CommitName(), Now()};
+  return {MachineName(), VectorUnit(), compiler, BuildName(), Now()};
 }
 
 }  // namespace flatlight

@@ -11,8 +11,8 @@ struct Machine {
   std::string processor;    // Its model's name; "unknown" if the system does not tell.
   std::string vector_unit;  // The widest that it has: AVX-512, AVX2, SSE4.2, NEON.
   std::string compiler;
-  std::string commit;  // Of the tree that the program is started in; "unknown" outside of one.
-  std::string date;    // UTC, ISO 8601.
+  std::string build;  // See BuildName.
+  std::string date;   // UTC, ISO 8601.
 };
 
 Machine ThisMachine();

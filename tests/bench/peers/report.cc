@@ -31,9 +31,9 @@ bool WriteCsv(const std::vector<Row>& rows, std::FILE* file) {
   const Machine machine = ThisMachine();
   std::fprintf(file,
                "name,scene,size,density,unit,rate,flatlight_ratio,flatlight_ratio_q1,flatlight_ratio_q3,differing,"
-               "machine,vector_unit,compiler,commit,date\n");
+               "machine,vector_unit,compiler,build,date\n");
   const std::string where = Quoted(machine.processor) + "," + machine.vector_unit + "," + Quoted(machine.compiler) +
-                            "," + machine.commit + "," + machine.date;
+                            "," + machine.build + "," + machine.date;
   for (const Row& row : rows) {
     const Timing& timing = row.timing;
     const std::string figures =

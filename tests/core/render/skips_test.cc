@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <random>
@@ -21,6 +23,10 @@ void ExpectSameBits(const Field& a, const Field& b) {
   for (std::size_t p = 0; p < a.probes.size(); ++p) {
     EXPECT_EQ(a.probes[p].irradiance, b.probes[p].irradiance);
     EXPECT_EQ(a.probes[p].gradient, b.probes[p].gradient);
+    EXPECT_EQ(a.probes[p].gradient_error, b.probes[p].gradient_error);
+    EXPECT_EQ(a.probes[p].hessian, b.probes[p].hessian);
+    EXPECT_EQ(a.probes[p].hessian_error, b.probes[p].hessian_error);
+    EXPECT_EQ(a.probes[p].rotation_gradient, b.probes[p].rotation_gradient);
     EXPECT_EQ(a.probes[p].samples, b.probes[p].samples);
     EXPECT_EQ(a.probes[p].standard_error, b.probes[p].standard_error);
   }
@@ -99,6 +105,38 @@ TEST(SkipsTest, EverySkipLeavesTheSameBits) {
     if (c.skip == skip::kConvergedPoints || c.skip == skip::kVisibility || c.skip == skip::kBounces) {
       EXPECT_LE(with.field->rays, without.field->rays);
     }
+  }
+}
+
+// Convex rooms of dark and shining walls of any length: lamps beside each other, apart, and behind a receiver.
+TEST(SkipsTest, RoomsWhereNothingBlocksKeepTheirBitsInClosedForm) {
+  Settings exact;
+  exact.method = Method::kExact;
+  exact.max_bounces = 0;
+  Settings thorough = exact;
+  thorough.no_skip = {skip::kVisibility};
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const int walls = 3 + static_cast<int>(20 * unit(random));
+    std::vector<double> angles;
+    angles.reserve(static_cast<std::size_t>(walls));
+    for (int i = 0; i < walls; ++i) angles.push_back(6.283 * unit(random));
+    std::sort(angles.begin(), angles.end());
+    SceneMaker maker;
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+      const double a = angles[i], b = angles[(i + 1) % angles.size()];
+      Look look;
+      if (unit(random) < 0.7) look.radiance = {0.1 + unit(random)};
+      maker.Segment("wall " + std::to_string(i), {std::cos(a), 0.7 * std::sin(a)}, {std::cos(b), 0.7 * std::sin(b)},
+                    look);
+      maker.Probe("wall " + std::to_string(i), 3);
+    }
+    const std::shared_ptr<const Scene> scene = maker.Build();
+    if (scene->traits().emitting_curves == 0) continue;
+    ASSERT_TRUE(PlanFor(*scene, exact).Takes(skip::kVisibility));
+    ExpectSameBits(*Render(scene, exact).field, *Render(scene, thorough).field);
   }
 }
 
