@@ -25,7 +25,7 @@ constexpr std::string_view kPackage = "/flatlight.v1.";
 constexpr char kOtherMethods[] = "other";  // Health, reflection, and names that strangers think of.
 
 bool IsRequestId(const grpc::string_ref& text) {
-  return text.size() > 0 && text.size() <= kMaxRequestIdBytes &&
+  return !text.empty() && text.size() <= kMaxRequestIdBytes &&
          std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c <= '~' && c != '"' && c != '\\'; });
 }
 
