@@ -60,7 +60,7 @@ absl::Status Prune(Connection& connection, double seconds, std::vector<v1::Job>&
       kept.push_back(std::move(job));
       continue;
     }
-    const absl::Status deleted = DeleteJob(connection, job.name());
+    absl::Status deleted = DeleteJob(connection, job.name());
     if (!deleted.ok() && !absl::IsNotFound(deleted)) return deleted;
   }
   jobs = std::move(kept);
