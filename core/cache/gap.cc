@@ -14,7 +14,6 @@ namespace {
 
 // A record is wanted at most so many times as densely at one end of a gap as at the other.
 constexpr double kSteepest = 8;
-constexpr double kFarOff = 1e50;        // As good as infinite.
 constexpr double kMostError = 1;        // Relative; more tells no more.
 constexpr double kLeftOfUnknown = 0.1;  // Of the distance of records, at the ends of where nothing is known yet.
 
@@ -118,7 +117,8 @@ std::vector<Gap> FindGaps(std::span<const double> points, std::span<const CacheR
           if (record) error = std::min(error, record->CostAt(points[next]));
       }
       gap.error = std::max(gap.error, error);
-      gap.squares += std::min(error, kFarOff) * std::min(error, kFarOff);
+      const double counted = std::min(error, Gap::kFarOff);
+      gap.squares += counted * counted;
       ++next;
     }
     gap.points = points.subspan(begin, next - begin);

@@ -20,6 +20,8 @@ struct TrackCorners {
 
 // Up to the next event a record vouches for what lies beside it; beyond there is a stretch of its own.
 struct Gap {
+  static constexpr double kFarOff = 1e50;  // Of errors: as good as infinite, and its square is none.
+
   const CacheRecord* before = nullptr;  // Whose footprint reaches in from the left,
   const CacheRecord* after = nullptr;   // and from the right; null if none does.
   double low = 0, high = 0;

@@ -172,9 +172,10 @@ std::vector<RecordPlace> Placement::Next(std::vector<CacheRecord>& records) cons
     // All that is left is planned for where the error is largest; if there is a good estimate of it, where it takes
     // most off the sum of squares.
     const auto gain = [&](const Candidate& c) {
-      const double now = std::min(c.gap.ErrorWith(c.count, power), 1e50);
+      const double now = std::min(c.gap.ErrorWith(c.count, power), Gap::kFarOff);
       if (options_.control != ErrorControl::kVisibilityEvents || c.gap.error == 0) return now;
-      const double then = std::min(c.gap.ErrorWith(c.count + 1, power), 1e50), error = std::min(c.gap.error, 1e50);
+      const double then = std::min(c.gap.ErrorWith(c.count + 1, power), Gap::kFarOff);
+      const double error = std::min(c.gap.error, Gap::kFarOff);
       return c.gap.squares * (now - then) * (now + then) / (error * error);
     };
     std::priority_queue<std::pair<double, std::size_t>> best;

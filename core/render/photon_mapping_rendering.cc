@@ -111,8 +111,7 @@ PhotonMappingRendering::PhotonMappingRendering(std::shared_ptr<const Scene> scen
   }
   chooses_widths_ = !gathers_ && !settings_.bandwidth && !settings_.neighbours;
   if (chooses_widths_) quantities_ = points_.size() <= kManyPoints ? kWidths : kFewWidths;
-  PhotonPurpose purpose;
-  purpose.reflectors = gathers_, purpose.probes = !gathers_;
+  const PhotonPurpose purpose = gathers_ ? PhotonPurpose::kReflectors : PhotonPurpose::kProbes;
   std::optional<std::uint32_t> most_bounces = settings_.max_bounces;
   if (!reflects_) most_bounces = 0;
   // What a gather finds is reflected once more.
@@ -131,9 +130,13 @@ PhotonMappingRendering::PhotonMappingRendering(std::shared_ptr<const Scene> scen
   BeginPass();
 }
 
+std::uint64_t PhotonMappingRendering::AllPhotons() const {
+  return settings_.photons ? std::max<std::uint64_t>(*settings_.photons, kReplicates) : kMostPhotons;
+}
+
 void PhotonMappingRendering::BeginPass() {
   pass_ = {};
-  const std::uint64_t all = settings_.photons ? std::max<std::uint64_t>(*settings_.photons, kReplicates) : kMostPhotons;
+  const std::uint64_t all = AllPhotons();
   const std::uint64_t done = photons_done_;
   std::uint64_t count;
   if (done == 0) {
@@ -191,17 +194,14 @@ void PhotonMappingRendering::MakeMaps(Executor& executor, int threads) {
   options.chooses = !chooses_widths_;
   options.narrowing = UnitPower(
       static_cast<double>(pass_.trace.end() - pass_.trace.first()) / static_cast<double>(pass_.trace.end()), 0.2);
-  if (!gathers_)
-    pass_.probes = std::make_unique<PhotonMaps>(*stretches_, std::move(photons.on_probes), photons.paths, options,
-                                                executor, threads);
+  pass_.maps =
+      std::make_unique<PhotonMaps>(*stretches_, std::move(photons.photons), photons.paths, options, executor, threads);
   if (!gathers_) return;
-  pass_.reflectors = std::make_unique<PhotonMaps>(*stretches_, std::move(photons.on_reflectors), photons.paths, options,
-                                                  executor, threads);
   using Told = MapIrradiance::Quantity;
   pass_.known.reserve(2 * kReplicates);
   for (const Told told : {Told::kIrradiance, Told::kBias}) {
     for (std::size_t r = 0; r < kReplicates; ++r) {
-      pass_.known.emplace_back(*pass_.reflectors, r, told);
+      pass_.known.emplace_back(*pass_.maps, r, told);
       pass_.trees.push_back(
           tree_->EndedBy(pass_.known.back(), told == Told::kBias ? Emission::kLeftOut : Emission::kSeen));
     }
@@ -220,11 +220,10 @@ bool PhotonMappingRendering::LookUpAt(std::size_t number, std::size_t r, const C
     for (std::size_t c = 0; c < channels_; ++c) next_[Index(number, r, quantity) + c] = kept[static_cast<int>(c)];
   };
   if (chooses_widths_) {
-    const double widest = pass_.probes->Widest(point.place);
+    const double widest = pass_.maps->Widest(point.place);
     double width = widest;
     for (std::size_t j = 0; j < quantities_; ++j, width /= WidthLadder::kRatio)
-      keep(j, pass_.probes->Density(r, pass_.probes->WindowOf(point.place, width), PhotonMaps::Width::kFirst,
-                                    kAnyBounces));
+      keep(j, pass_.maps->Density(r, pass_.maps->WindowOf(point.place, width), PhotonMaps::Width::kFirst, kAnyBounces));
     if (r == 0) point.widest = widest;
     return true;
   }
@@ -251,10 +250,10 @@ bool PhotonMappingRendering::LookUpAt(std::size_t number, std::size_t r, const C
     // Of one photon more that is reflected somewhere.
     step = 0.5 * LargestReflectance(*scene_) * light.inverse_distance;
   }
-  if (pass_.probes && point.receiver->element != ElementId::kNone) {
-    const DensityWindow window = pass_.probes->WindowAt(point.place);
-    value[kIrradiance] = value[kIrradiance] + pass_.probes->Density(r, window, PhotonMaps::Width::kFirst, kAnyBounces);
-    value[kBias] = value[kBias] + pass_.probes->Bias(r, window, kAnyBounces);
+  if (!gathers_ && point.receiver->element != ElementId::kNone) {
+    const DensityWindow window = pass_.maps->WindowAt(point.place);
+    value[kIrradiance] = value[kIrradiance] + pass_.maps->Density(r, window, PhotonMaps::Width::kFirst, kAnyBounces);
+    value[kBias] = value[kBias] + pass_.maps->Bias(r, window, kAnyBounces);
     step = std::max(step, 0.5 / window.width);
   }
   for (std::size_t q = 0; q < quantities_; ++q) keep(q, value[q]);
@@ -301,8 +300,7 @@ void PhotonMappingRendering::Advance(Executor& executor, const Cancellation& can
 void PhotonMappingRendering::EndPass(Clock::Time now) {
   for (std::size_t point = 0; point < points_.size(); ++point) {
     for (std::size_t r = 0; r < kReplicates; ++r) {
-      const auto paths = static_cast<double>(PhotonTrace::PathsOf(r, pass_.trace.end()) -
-                                             PhotonTrace::PathsOf(r, pass_.trace.first()));
+      const auto paths = static_cast<double>(pass_.trace.paths(r));
       for (std::size_t i = Index(point, r, 0); i < Index(point, r, 0) + quantities_ * channels_; ++i)
         sums_[i] += paths * next_[i];
     }
@@ -318,7 +316,7 @@ void PhotonMappingRendering::EndPass(Clock::Time now) {
 
 void PhotonMappingRendering::DecideEnd(Clock::Time now) {
   worst_error_ = WorstError();
-  const std::uint64_t all = settings_.photons ? std::max<std::uint64_t>(*settings_.photons, kReplicates) : kMostPhotons;
+  const std::uint64_t all = AllPhotons();
   // One decision for all points hardly biases any (THEORY 18 B12.3), and seldom ones are cheap.
   if (settings_.target_error && *worst_error_ <= *settings_.target_error) {
     end_reason_ = EndReason::kTargetReached;
@@ -350,7 +348,7 @@ bool PhotonMappingRendering::Resume(std::string_view checkpoint) {
   StateReader reader(checkpoint);
   reader(resumed_.emplace(), rays_);
   State(*this, reader);
-  const std::uint64_t all = settings_.photons ? std::max<std::uint64_t>(*settings_.photons, kReplicates) : kMostPhotons;
+  const std::uint64_t all = AllPhotons();
   reader.Require(photons_done_ > 0 && photons_done_ < all);
   if (!reader.AtEnd()) return false;
   resumed_photons_ = photons_done_;

@@ -72,15 +72,16 @@ class PhotonMappingRendering final : public Rendering {
   struct Pass {
     std::uint32_t rays = 0;  // Of a replicate's gather.
     PhotonTrace trace;
-    std::unique_ptr<const PhotonMaps> reflectors, probes;
-    std::vector<MapIrradiance> known;  // By replicate, then those of bias.
-    std::vector<RayTree> trees;        // Likewise.
+    std::unique_ptr<const PhotonMaps> maps;  // Of reflectors if rays gather, else of curves with points.
+    std::vector<MapIrradiance> known;        // By replicate, then those of bias.
+    std::vector<RayTree> trees;              // Likewise.
     OrderedWork look{0};
   };
   struct Value {
     std::array<Spectrum, kQuantities> value, error;
   };
 
+  std::uint64_t AllPhotons() const;
   bool OpenEnded() const { return settings_.target_error || settings_.time_limit || !settings_.photons; }
   void BeginPass();
   void AddChained(const Receiver& receiver, const std::vector<ChainedLight>& ways, Spectrum& irradiance,

@@ -65,20 +65,16 @@ void CheckPhotonMapping(const Scene& scene, const Settings& settings, Diagnostic
     return;
   }
   CheckPhotonRanges(settings, diagnostics);
-  const std::optional<std::string> off = ProbeOffCurves(scene);
-  if (!gathers) {
-    const std::string cure = direct && !settings.final_gather ? ", which is the default where nothing reflects" : "";
-    if (settings.samples)
-      diagnostics.Add("settings.samples", "are rays of a final gather, and there is none" + cure + ": leave this out");
-    if (settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone)
-      diagnostics.Add("settings.derivatives",
-                      "come from a final gather, and there is none" + cure + ": leave this out");
-    if (off) {
-      diagnostics.Add("settings.finalGather", "is false" + cure + ", and probe \"" + *off +
-                                                  "\" has points that lie on no curve, where no photon arrives: set "
-                                                  "it to true");
-    }
-    return;
+  if (gathers) return;
+  const std::string cure = direct && !settings.final_gather ? ", which is the default where nothing reflects" : "";
+  if (settings.samples)
+    diagnostics.Add("settings.samples", "are rays of a final gather, and there is none" + cure + ": leave this out");
+  if (settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone)
+    diagnostics.Add("settings.derivatives", "come from a final gather, and there is none" + cure + ": leave this out");
+  if (const auto off = ProbeOffCurves(scene)) {
+    diagnostics.Add("settings.finalGather", "is false" + cure + ", and probe \"" + *off +
+                                                "\" has points that lie on no curve, where no photon arrives: set "
+                                                "it to true");
   }
 }
 

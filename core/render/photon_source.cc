@@ -27,19 +27,13 @@ std::optional<std::uint32_t> TracedBounces(const Settings& settings) {
   return *settings.max_bounces - 1;
 }
 
-PhotonPurpose Purpose() {
-  PhotonPurpose purpose;
-  purpose.reflectors = true;
-  return purpose;
-}
-
 }  // namespace
 
 PhotonSource::PhotonSource(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const RayCaster>& caster,
                            const Settings& settings)
     : stretches_(caster->scene()),
       light_(caster, Nowhere(), TracedBounces(settings)),
-      tracer_(light_, caster->scene(), *scene, stretches_, Purpose(), MostBounces(settings)),
+      tracer_(light_, caster->scene(), *scene, stretches_, PhotonPurpose::kReflectors, MostBounces(settings)),
       trace_(settings.seed.value_or(0), 0, std::max<std::uint64_t>(*settings.photons, kReplicates)) {}
 
 void PhotonSource::Advance(Executor& executor, int max_threads, const Cancellation& cancellation, const Clock& clock,
@@ -54,8 +48,8 @@ void PhotonSource::Advance(Executor& executor, int max_threads, const Cancellati
   rays_ = photons.rays;
   DensityOptions options;
   options.kernel = Kernel::kBox;
-  maps_ = std::make_unique<const PhotonMaps>(stretches_, std::move(photons.on_reflectors), photons.paths, options,
-                                             executor, max_threads);
+  maps_ = std::make_unique<const PhotonMaps>(stretches_, std::move(photons.photons), photons.paths, options, executor,
+                                             max_threads);
   irradiance_.emplace(*maps_, PooledIrradiance::Quantity::kIrradiance);
   doubt_.emplace(*maps_, PooledIrradiance::Quantity::kDoubt);
 }

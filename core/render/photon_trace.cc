@@ -15,7 +15,7 @@ constexpr std::uint32_t kChunkPaths = 256;
 PhotonTrace::PhotonTrace(std::uint32_t seed, std::uint64_t first, std::uint64_t end)
     : seed_(seed), first_(first), end_(end) {
   std::uint64_t most_paths = 0;
-  for (std::size_t r = 0; r < kReplicates; ++r) most_paths = std::max(most_paths, PathsOf(r, end) - PathsOf(r, first));
+  for (std::size_t r = 0; r < kReplicates; ++r) most_paths = std::max(most_paths, paths(r));
   chunks_.resize((most_paths + kChunkPaths - 1) / kChunkPaths * kReplicates);
   work_ = OrderedWork(chunks_.size());
 }
@@ -29,7 +29,7 @@ bool PhotonTrace::TraceChunk(const PhotonTracer& tracer, std::size_t i, const Ca
   const std::uint64_t end = std::min(begin + kChunkPaths, PathsOf(r, end_));
   for (std::uint64_t path = begin; path < end; ++path) {
     if (path % 64 == 0 && cancellation.cancelled()) return false;
-    chunk.rays += tracer.Trace(stream, static_cast<std::uint32_t>(path), chunk.on_reflectors, chunk.on_probes);
+    chunk.rays += tracer.Trace(stream, static_cast<std::uint32_t>(path), chunk.photons);
   }
   return true;
 }
@@ -45,15 +45,11 @@ void PhotonTrace::Advance(const PhotonTracer& tracer, Executor& executor, int ma
 
 TracedPhotons PhotonTrace::Take(Executor& executor, int max_threads) {
   TracedPhotons traced;
-  for (std::size_t r = 0; r < kReplicates; ++r)
-    traced.paths[r] = static_cast<double>(PathsOf(r, end_) - PathsOf(r, first_));
+  for (std::size_t r = 0; r < kReplicates; ++r) traced.paths[r] = static_cast<double>(paths(r));
   executor.ParallelFor(kReplicates, max_threads, [&](std::size_t r) {
-    for (std::size_t i = r; i < chunks_.size(); i += kReplicates) {
-      const Chunk& chunk = chunks_[i];
-      traced.on_reflectors[r].insert(traced.on_reflectors[r].end(), chunk.on_reflectors.begin(),
-                                     chunk.on_reflectors.end());
-      traced.on_probes[r].insert(traced.on_probes[r].end(), chunk.on_probes.begin(), chunk.on_probes.end());
-    }
+    std::vector<Photon>& photons = traced.photons[r];
+    for (std::size_t i = r; i < chunks_.size(); i += kReplicates)
+      photons.insert(photons.end(), chunks_[i].photons.begin(), chunks_[i].photons.end());
   });
   for (const Chunk& chunk : chunks_) traced.rays += chunk.rays;
   chunks_.clear();

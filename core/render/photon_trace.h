@@ -16,7 +16,7 @@ namespace flatlight {
 
 // What a trace of photons leaves behind.
 struct TracedPhotons {
-  PhotonMaps::Photons on_reflectors, on_probes;
+  PhotonMaps::Photons photons;
   std::array<double, kReplicates> paths{};  // Behind those of each replicate.
   double rays = 0;
 };
@@ -35,6 +35,8 @@ class PhotonTrace {
 
   std::uint64_t first() const { return first_; }
   std::uint64_t end() const { return end_; }
+  // Those of one replicate.
+  std::uint64_t paths(std::size_t replicate) const { return PathsOf(replicate, end_) - PathsOf(replicate, first_); }
   bool done() const { return work_.done(); }
   double fraction() const { return work_.fraction(); }
   // For about `budget`, until done or cancelled.
@@ -46,7 +48,7 @@ class PhotonTrace {
  private:
   // Photons of one path number after another.
   struct Chunk {
-    std::vector<Photon> on_reflectors, on_probes;
+    std::vector<Photon> photons;
     double rays = 0;
   };
   bool TraceChunk(const PhotonTracer& tracer, std::size_t i, const Cancellation& cancellation);

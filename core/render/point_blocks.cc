@@ -19,14 +19,6 @@ constexpr double kMostBlocksPerShard = 4096;
 // Between two merges each thread gets at most this many shards: enough to even out, few enough to hold in memory.
 constexpr double kShardsPerThread = 24;
 
-double VarianceOf(std::span<const double> values) {
-  double sum = 0, squares = 0;
-  for (const double x : values) sum += x;
-  const double mean = sum / static_cast<double>(values.size());
-  for (const double x : values) squares += (x - mean) * (x - mean);
-  return squares / static_cast<double>(values.size() - 1);
-}
-
 }  // namespace
 
 PointBlocks::PointBlocks(const PointSampler& sampler, std::size_t points)
@@ -50,7 +42,7 @@ void PointBlocks::UpdateVariances(std::size_t point) {
       for (std::size_t r = 0; r < kHalfReplicates; ++r)
         sums[r] = trees_[point].Total(c * kReplicates + half * kHalfReplicates + r);
       // Of the sum of a replicate to one sample.
-      spreads_[at] = VarianceOf(sums) / static_cast<double>(blocks(point));
+      spreads_[at] = kHalfReplicates * EstimateMean(sums, 0).variance / static_cast<double>(blocks(point));
     }
   }
 }

@@ -15,8 +15,8 @@
 namespace flatlight {
 
 // What `reference` found about the worlds used last, so that other probes are gathered from what is solved and a
-// smaller target refines it. Who takes one has it alone: another job on that world begins anew meanwhile, or waits for
-// nothing. Safe to use from several threads.
+// smaller target refines it. Who takes one has it alone: another job on that world begins anew meanwhile. Safe to use
+// from several threads.
 class SolvedWorlds {
  public:
   // Keeps so many bytes; what was used longest ago goes first. Of what is too large by itself the light alone is kept,

@@ -31,14 +31,15 @@ absl::StatusOr<v1::GetActivityResponse> GetActivity(Backend& backend, const v1::
   }
   const CallTelemetry& telemetry = backend.telemetry;
   const ProcessReadings process = ReadProcess();
+  const Readings now = telemetry.metrics().Read();
   v1::GetActivityResponse response;
   response.set_uptime_seconds(telemetry.uptime_seconds());
   response.set_cpu_seconds(process.cpu_seconds);
   response.set_job_cpu_seconds(telemetry.metrics().job_cpu_seconds());
   response.set_rays(telemetry.metrics().rays());
   response.set_resident_bytes(process.resident_bytes);
-  response.set_watches(telemetry.metrics().Read().watches);
-  for (const auto& [name, user] : backend.scheduler.Load().users) {
+  response.set_watches(now.watches);
+  for (const auto& [name, user] : now.load.users) {
     v1::UserActivity& activity = *response.add_users();
     activity.set_user(name);
     activity.set_running(static_cast<std::uint32_t>(user.running));

@@ -9,8 +9,8 @@
 
 #include "absl/status/status.h"
 #include "google/protobuf/descriptor.h"
-#include "google/rpc/error_info.pb.h"
 #include "google/rpc/status.pb.h"
+#include "server/service/status_convert.h"
 #include "server/store/random_bytes.h"
 
 namespace flatlight {
@@ -29,24 +29,11 @@ bool IsRequestId(const grpc::string_ref& text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c <= '~' && c != '"' && c != '\\'; });
 }
 
-std::string HexPrefix() {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const unsigned char byte : RandomBytes<4>()) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
-  return text + "-";
-}
-
-std::string ReasonOf(const grpc::Status& status) {
+std::string ReasonOrCode(const grpc::Status& status) {
   if (status.ok()) return "";
   google::rpc::Status details;
   if (details.ParseFromString(status.error_details())) {
-    for (const auto& detail : details.details()) {
-      google::rpc::ErrorInfo info;
-      if (detail.UnpackTo(&info)) return info.reason();
-    }
+    if (std::string reason = ReasonOf(details); !reason.empty()) return reason;
   }
   return absl::StatusCodeToString(static_cast<absl::StatusCode>(status.error_code()));
 }
@@ -127,7 +114,7 @@ class Factory final : public grpc::experimental::ServerInterceptorFactoryInterfa
 }  // namespace
 
 CallTelemetry::CallTelemetry(Metrics& metrics, JsonLog* calls, JsonLog* audit, const std::vector<std::string>& services)
-    : metrics_(metrics), calls_(calls), audit_(audit), id_prefix_(HexPrefix()) {
+    : metrics_(metrics), calls_(calls), audit_(audit), id_prefix_(RandomHex(4) + "-") {
   for (const std::string& name : services) {
     const auto* service = google::protobuf::DescriptorPool::generated_pool()->FindServiceByName(name);
     for (int i = 0; i < service->method_count(); ++i) {
@@ -162,7 +149,7 @@ std::string CallTelemetry::NextRequestId() { return id_prefix_ + std::to_string(
 
 void CallTelemetry::Ended(const grpc::ServerContextBase* context, const Call& call) {
   const std::string code = absl::StatusCodeToString(static_cast<absl::StatusCode>(call.status.error_code()));
-  const std::string reason = ReasonOf(call.status);
+  const std::string reason = ReasonOrCode(call.status);
   const bool ours = methods_.count(call.method) > 0;
   const std::string method = ours ? call.method.substr(kPackage.size()) : kOtherMethods;
   metrics_.CallEnded(method, code, ours ? reason : "", call.seconds, static_cast<double>(call.sent_bytes));

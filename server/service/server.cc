@@ -131,7 +131,7 @@ struct Server::Parts {
 
   Readings Read() {
     Readings now;
-    now.jobs = scheduler.Load().Total();
+    now.load = scheduler.Load();
     now.watches = static_cast<double>(hub.size());
     const auto& counts = hub.counts();
     now.resumed_watches = static_cast<double>(counts.resumed);

@@ -112,13 +112,16 @@ google::rpc::Status ToRpcStatus(const absl::Status& status) {
   return result;
 }
 
-absl::Status FromRpcStatus(const google::rpc::Status& status) {
-  std::string reason;
+std::string ReasonOf(const google::rpc::Status& status) {
   for (const auto& detail : status.details()) {
     google::rpc::ErrorInfo info;
-    if (detail.UnpackTo(&info)) reason = info.reason();
+    if (detail.UnpackTo(&info)) return info.reason();
   }
-  return MakeError(static_cast<absl::StatusCode>(status.code()), reason, status.message());
+  return "";
+}
+
+absl::Status FromRpcStatus(const google::rpc::Status& status) {
+  return MakeError(static_cast<absl::StatusCode>(status.code()), ReasonOf(status), status.message());
 }
 
 grpc::Status ToGrpcStatus(const absl::Status& status) {

@@ -22,6 +22,8 @@ absl::Status MakeFieldError(const std::string& path, const std::string& message)
 // first are kept; ErrorInfo.metadata["more_violations"] then says how many were left out (ValidateScene tells them
 // all).
 google::rpc::Status ToRpcStatus(const absl::Status& status);
+// Of its ErrorInfo; empty if it has none.
+std::string ReasonOf(const google::rpc::Status& status);
 // The way back, without the details that only a caller needs.
 absl::Status FromRpcStatus(const google::rpc::Status& status);
 grpc::Status ToGrpcStatus(const absl::Status& status);

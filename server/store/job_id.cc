@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/store/job_id.h"
 
+#include "absl/strings/escaping.h"
 #include "server/store/random_bytes.h"
 
 namespace flatlight {
@@ -28,13 +29,10 @@ JobId JobId::Random() {
   auto bytes = RandomBytes<16>();
   bytes[6] = static_cast<unsigned char>((bytes[6] & 0x0f) | 0x40);
   bytes[8] = static_cast<unsigned char>((bytes[8] & 0x3f) | 0x80);
-  constexpr char kDigits[] = "0123456789abcdef";
   JobId id;
-  for (const unsigned char byte : bytes) {
-    if (IsDashPlace(id.uuid_.size())) id.uuid_ += '-';
-    id.uuid_ += kDigits[byte >> 4];
-    id.uuid_ += kDigits[byte & 15];
-  }
+  id.uuid_ = absl::BytesToHexString({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  for (std::size_t i = 0; i < kUuidLength; ++i)
+    if (IsDashPlace(i)) id.uuid_.insert(i, 1, '-');
   return id;
 }
 

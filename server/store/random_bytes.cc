@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "absl/strings/escaping.h"
+
 namespace flatlight {
 
 void FillRandomBytes(unsigned char* bytes, std::size_t count) {
@@ -20,6 +22,12 @@ void FillRandomBytes(unsigned char* bytes, std::size_t count) {
     bytes += got;
     count -= static_cast<std::size_t>(got);
   }
+}
+
+std::string RandomHex(std::size_t bytes) {
+  std::string random(bytes, '\0');
+  FillRandomBytes(reinterpret_cast<unsigned char*>(random.data()), bytes);
+  return absl::BytesToHexString(random);
 }
 
 }  // namespace flatlight

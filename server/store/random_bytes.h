@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 
 namespace flatlight {
 
@@ -16,6 +17,9 @@ std::array<unsigned char, kCount> RandomBytes() {
   FillRandomBytes(bytes.data(), kCount);
   return bytes;
 }
+
+// So many of them, as twice as many digits 0-9 a-f.
+std::string RandomHex(std::size_t bytes);
 
 }  // namespace flatlight
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "absl/strings/escaping.h"
+
 namespace flatlight {
 
 struct Sha256::Context {
@@ -24,13 +26,7 @@ std::string Sha256::Finish() {
   unsigned char digest[EVP_MAX_MD_SIZE];
   unsigned int size = 0;
   EVP_DigestFinal_ex(context_->evp, digest, &size);
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (unsigned int i = 0; i < size; ++i) {
-    text += kDigits[digest[i] >> 4];
-    text += kDigits[digest[i] & 15];
-  }
-  return text;
+  return absl::BytesToHexString({reinterpret_cast<const char*>(digest), size});
 }
 
 std::string Sha256Of(std::string_view bytes) {

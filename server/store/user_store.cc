@@ -22,15 +22,7 @@ constexpr std::array<std::pair<Role, std::string_view>, 4> kRoles = {{
 constexpr std::size_t kMostNameBytes = 64;
 
 // The beginning lets those who search for leaked secrets know one.
-std::string MakeToken() {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string token = "flatlight_";
-  for (const unsigned char byte : RandomBytes<32>()) {
-    token += kDigits[byte >> 4];
-    token += kDigits[byte & 15];
-  }
-  return token;
-}
+std::string MakeToken() { return "flatlight_" + RandomHex(32); }
 
 bool IsName(std::string_view name) {
   const auto is_alphanumeric = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };

@@ -79,12 +79,13 @@ class Looks final : public prometheus::Collectable {
     const std::lock_guard lock(mutex_);
     if (!read_) return families;
     const Readings now = read_();
+    const SchedulerLoad::User jobs = now.load.Total();
     families.push_back({"flatlight_jobs",
                         "Jobs that have not ended.",
                         MetricType::Gauge,
-                        {Labelled("state", "waiting", static_cast<double>(now.jobs.waiting)),
-                         Labelled("state", "running", static_cast<double>(now.jobs.running)),
-                         Labelled("state", "paused", static_cast<double>(now.jobs.paused))}});
+                        {Labelled("state", "waiting", static_cast<double>(jobs.waiting)),
+                         Labelled("state", "running", static_cast<double>(jobs.running)),
+                         Labelled("state", "paused", static_cast<double>(jobs.paused))}});
     families.push_back(OneValue("flatlight_watches", "Watches that are open.", MetricType::Gauge, now.watches));
     families.push_back(
         {"flatlight_watches_total",

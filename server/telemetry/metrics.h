@@ -13,7 +13,7 @@ namespace flatlight {
 
 // What is read when somebody asks, rather than counted.
 struct Readings {
-  SchedulerLoad::User jobs;
+  SchedulerLoad load;
   double watches = 0;          // Open.
   double new_watches = 0;      // Since the start, as all below.
   double resumed_watches = 0;  // That went on where an earlier one ended.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether errors that are stated have the right size, over the gallery.
 //
-//   calibration [CSV [SCENE [METHOD]]]     the rows go to CSV (default: calibration.csv) as well; SCENE and METHOD
-//   choose
-//                                          rows that have them in their names
+//   calibration [CSV [SCENE [METHOD]]]     the rows go to CSV (default: out/calibration.csv) as well; SCENE and
+//                                          METHOD choose rows that have them in their names
 //   calibration --check                    path tracing of all bounces alone, few seeds; status 1 if errors are stated
 //                                          too small anywhere, or too large over the gallery
 //
@@ -229,5 +228,5 @@ int Check() {
 int main(int argc, char** argv) {
   const auto argument = [&](int i, const char* otherwise) { return std::string(argc > i ? argv[i] : otherwise); };
   if (argument(1, "") == "--check") return flatlight::Check();
-  return flatlight::Run(argument(1, "calibration.csv"), argument(2, ""), argument(3, ""));
+  return flatlight::Run(argument(1, "out/calibration.csv"), argument(2, ""), argument(3, ""));
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a number of cache records makes of a floor below a lamp, by error control: medians over scenes of one kind.
 //
-//   record_placement [VARIANTS [CSV]]      default: 15, record_placement.csv
+//   record_placement [VARIANTS [CSV]]      default: 15, out/record_placement.csv
 //
 // Where records go is a function of the scene, so chance is in the scene: in each variant but the first, lamp, blocker
-// and the ends of the floor stand a little elsewhere. Errors are root mean squares over
-// 257 points, relative to the mean irradiance. Ratios are to split sphere, degree 1, in the same variant: the median
-// and, in brackets, the lower and upper quartile.
+// and the ends of the floor stand a little elsewhere. Errors are root mean squares over 257 points, relative to the
+// mean irradiance. Ratios are to split sphere, degree 1, in the same variant: the median and, in brackets, the lower
+// and upper quartile.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -145,6 +145,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s is no number of variants, 1 to 1000\n", argv[1]);
     return 2;
   }
-  return flatlight::Run(static_cast<std::uint32_t>(variants), argc > 2 ? argv[2] : "record_placement.csv",
+  return flatlight::Run(static_cast<std::uint32_t>(variants), argc > 2 ? argv[2] : "out/record_placement.csv",
                         argc > 3 ? argv[3] : "");
 }

@@ -2,8 +2,7 @@
 // How much a path is worth: 1 / (variance x processor time) and 1 / (variance x rays) of path tracing, scene by scene.
 //
 //   sampling_efficiency [CSV [SCENE]]      the rows go to CSV (default: out/sampling_efficiency.csv) as well; with
-//   SCENE,
-//                                          only scenes whose name has it in it
+//                                          SCENE, only scenes whose name has it in it
 //
 // z^2 is the mean square of (value - truth) / stated error: above 1, errors are stated too small.
 //

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each skip saves, wherever it applies, and whether it changes the result; and what planning costs.
 //
-//   skips [CSV]      the rows go to CSV (default: out/skips.csv) as well, those on planning to skips-planning.csv
-//   beside
+//   skips [CSV]      the rows go to CSV (default: out/skips.csv) as well, those on planning to
+//                    skips-planning.csv beside
 //
 // A skip is measured on every scene and setting that takes it: rendered with it and without, turn by turn, on one
 // thread, in processor time. Exit status 1 if any result changed by a bit, or if a skip applied to nothing.

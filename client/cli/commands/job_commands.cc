@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "client/cli/commands/session.h"
 #include "client/cli/formats/enum_names.h"
 #include "client/cli/formats/json_text.h"
+#include "client/cli/formats/timestamp.h"
 #include "client/cli/jobs/job_calls.h"
 #include "client/cli/jobs/job_name.h"
 #include "client/cli/jobs/watch.h"
@@ -46,17 +46,12 @@ CommandResult Control(const CommandLine& line, Interruption& interruption,
   return line.quiet ? ExitCode::kDone : Answer(job->name() + " " + OptionName(job->state()) + '\n');
 }
 
-double SecondsNow() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 // Deletes the jobs that ended longer ago, here and on the server.
 absl::Status Prune(Connection& connection, double seconds, std::vector<v1::Job>& jobs) {
   const double now = SecondsNow();
   std::vector<v1::Job> kept;
   for (v1::Job& job : jobs) {
-    const double ended = static_cast<double>(job.end_time().seconds()) + 1e-9 * job.end_time().nanos();
-    if (!job.has_end_time() || now - ended < seconds) {
+    if (!job.has_end_time() || now - SecondsOf(job.end_time()) < seconds) {
       kept.push_back(std::move(job));
       continue;
     }

@@ -5,6 +5,7 @@
 
 #include "client/cli/commands/plan_text.h"
 #include "client/cli/formats/enum_names.h"
+#include "client/cli/formats/timestamp.h"
 #include "client/cli/progress/progress_line.h"
 #include "client/cli/text/numbers.h"
 #include "client/cli/text/text_table.h"
@@ -13,10 +14,7 @@
 namespace flatlight {
 namespace {
 
-using google::protobuf::Timestamp;
 using google::protobuf::util::TimeUtil;
-
-double Seconds(const Timestamp& time) { return static_cast<double>(time.seconds()) + 1e-9 * time.nanos(); }
 
 std::string Uuid(const v1::Job& job) { return job.name().substr(job.name().find('/') + 1); }
 
@@ -29,7 +27,7 @@ std::string JobListText(const std::vector<v1::Job>& jobs, double now) {
     rows.push_back({Uuid(job), OptionName(job.state()),
                     std::to_string(static_cast<int>(100 * job.progress().fraction())) + " %",
                     OptionName(job.plan().settings().method()),
-                    FormatSeconds(std::max(0.0, now - Seconds(job.create_time()))), Printable(job.scene())});
+                    FormatSeconds(std::max(0.0, now - SecondsOf(job.create_time()))), Printable(job.scene())});
   return FormatTable(rows);
 }
 

@@ -23,6 +23,8 @@
 #include <iterator>
 #include <vector>
 
+#include "absl/strings/escaping.h"
+
 namespace flatlight {
 namespace {
 
@@ -42,12 +44,7 @@ absl::Status Failed(const std::string& what) {
 std::string RandomToken() {
   std::array<unsigned char, 32> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return "";
-  std::string token;
-  for (const unsigned char byte : bytes) {
-    token += "0123456789abcdef"[byte >> 4];
-    token += "0123456789abcdef"[byte & 15];
-  }
-  return token;
+  return absl::BytesToHexString({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 // The path of a socket has at most 107 bytes, so a long TMPDIR won't do.

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "absl/strings/escaping.h"
 #include "client/cli/status/exit_code.h"
 
 namespace flatlight {
@@ -34,12 +35,8 @@ std::string NewUuid() {
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return "";
   bytes[6] = static_cast<unsigned char>((bytes[6] & 0x0F) | 0x40);
   bytes[8] = static_cast<unsigned char>((bytes[8] & 0x3F) | 0x80);
-  std::string uuid;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    if (i == 4 || i == 6 || i == 8 || i == 10) uuid += '-';
-    uuid += "0123456789abcdef"[bytes[i] >> 4];
-    uuid += "0123456789abcdef"[bytes[i] & 15];
-  }
+  std::string uuid = absl::BytesToHexString({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  for (const std::size_t dash : {8, 13, 18, 23}) uuid.insert(dash, 1, '-');
   return uuid;
 }
 

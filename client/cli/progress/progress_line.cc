@@ -2,9 +2,9 @@
 #include "client/cli/progress/progress_line.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "client/cli/formats/timestamp.h"
 #include "client/cli/text/numbers.h"
 #include "client/cli/text/text_table.h"
 
@@ -48,9 +48,7 @@ std::string QueueText(const v1::Job& job) {
                                                                       : "waiting: the server is full";
   text += ", " + (job.queue().ahead() > 0 ? FormatExactly(job.queue().ahead()) + " ahead" : std::string("next"));
   if (job.queue().has_expected_start()) {
-    const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
-    const google::protobuf::Timestamp& start = job.queue().expected_start();
-    const double wait = static_cast<double>(start.seconds()) + 1e-9 * start.nanos() - now.count();
+    const double wait = SecondsOf(job.queue().expected_start()) - SecondsNow();
     text += ", begins in about " + FormatSeconds(std::max(0.0, wait));
   }
   return text;

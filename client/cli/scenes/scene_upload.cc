@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "absl/strings/escaping.h"
 #include "client/cli/status/exit_code.h"
 #include "client/cli/text/numbers.h"
 #include "client/cli/text/text_table.h"
@@ -69,12 +70,7 @@ std::string Sha256Hex(const std::string& bytes) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned size = 0;
   EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr);
-  std::string hex;
-  for (unsigned i = 0; i < size; ++i) {
-    hex += "0123456789abcdef"[digest[i] >> 4];
-    hex += "0123456789abcdef"[digest[i] & 15];
-  }
-  return hex;
+  return absl::BytesToHexString({reinterpret_cast<const char*>(digest.data()), size});
 }
 
 absl::StatusOr<v1::SceneSource> ProvideScene(Connection& connection, const SceneArgument& scene,

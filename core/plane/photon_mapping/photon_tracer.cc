@@ -6,7 +6,7 @@
 namespace flatlight {
 
 PhotonTracer::PhotonTracer(const LightTracer& tracer, const Scene& scene, const Scene& probes,
-                           const Stretches& stretches, const PhotonPurpose& purpose, std::uint32_t most_bounces)
+                           const Stretches& stretches, PhotonPurpose purpose, std::uint32_t most_bounces)
     : tracer_(tracer),
       scene_(scene),
       stretches_(stretches),
@@ -21,24 +21,20 @@ PhotonTracer::PhotonTracer(const LightTracer& tracer, const Scene& scene, const 
   }
 }
 
-double PhotonTracer::Trace(const SampleStream& stream, std::uint32_t index, std::vector<Photon>& on_reflectors,
-                           std::vector<Photon>& on_probes) const {
+double PhotonTracer::Trace(const SampleStream& stream, std::uint32_t index, std::vector<Photon>& photons) const {
   return tracer_.Follow(stream, index, [&](const LightStep& step) {
     if (!step.hit) return;
     const CurveId id = scene_.element(step.hit->element).curve;
     const Curve& curve = scene_.curve(id);
     const bool diffuse = std::holds_alternative<Lambertian>(curve.material);
     // What reflects adds a bounce.
-    const bool on_reflector =
-        purpose_.reflectors && diffuse && !curve.reflectance.IsBlack() && step.depth < most_bounces_;
-    const bool on_probe = purpose_.probes && has_probe_[static_cast<std::size_t>(id)] != 0;
-    if (on_reflector || on_probe) {
-      const Side side = Dot(step.hit->normal, step.direction) < 0 ? Side::kFront : Side::kBack;
-      const SidePlace place = stretches_.Locate(step.hit->element, step.hit->position, side);
-      const Photon photon{place.side, place.at, step.flux, step.depth};
-      if (on_reflector) on_reflectors.push_back(photon);
-      if (on_probe) on_probes.push_back(photon);
-    }
+    const bool wanted = purpose_ == PhotonPurpose::kReflectors
+                            ? diffuse && !curve.reflectance.IsBlack() && step.depth < most_bounces_
+                            : has_probe_[static_cast<std::size_t>(id)] != 0;
+    if (!wanted) return;
+    const Side side = Dot(step.hit->normal, step.direction) < 0 ? Side::kFront : Side::kBack;
+    const SidePlace place = stretches_.Locate(step.hit->element, step.hit->position, side);
+    photons.push_back({place.side, place.at, step.flux, step.depth});
   });
 }
 

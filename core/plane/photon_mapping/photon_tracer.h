@@ -22,11 +22,9 @@ struct Photon {
 };
 
 // What photons are wanted for.
-struct PhotonPurpose {
-  // Irradiance of what reflects diffusely, for rays that look for it there.
-  bool reflectors = false;
-  // Irradiance on the curves with points.
-  bool probes = false;
+enum class PhotonPurpose : std::uint8_t {
+  kReflectors,  // Irradiance of what reflects diffusely, for rays that look for it there.
+  kProbes,      // Irradiance on the curves with points.
 };
 
 // Traces photons, and keeps those that are wanted.
@@ -34,11 +32,10 @@ class PhotonTracer {
  public:
   // All must outlive this. `probes`: has the probes; its world is that of the tracer's scene.
   PhotonTracer(const LightTracer& tracer, const Scene& scene, const Scene& probes, const Stretches& stretches,
-               const PhotonPurpose& purpose, std::uint32_t most_bounces);
+               PhotonPurpose purpose, std::uint32_t most_bounces);
 
-  // Adds those of path `index`: on reflectors, and on curves with points. Returns the rays cast.
-  double Trace(const SampleStream& stream, std::uint32_t index, std::vector<Photon>& on_reflectors,
-               std::vector<Photon>& on_probes) const;
+  // Adds those of path `index`. Returns the rays cast.
+  double Trace(const SampleStream& stream, std::uint32_t index, std::vector<Photon>& photons) const;
 
  private:
   const LightTracer& tracer_;

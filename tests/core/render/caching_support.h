@@ -11,8 +11,10 @@
 #include <cstdint>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <vector>
 
+#include "core/render/field.h"
 #include "core/render/settings.h"
 #include "tests/support/transport/render.h"
 #include "tests/support/transport/scene_maker.h"
@@ -32,21 +34,24 @@ struct Difference {
   double rms = 0;
 };
 
-inline Difference FromReference(const std::shared_ptr<const Scene>& scene, const Settings& settings) {
+inline std::shared_ptr<const Field> ReferenceOf(const std::shared_ptr<const Scene>& scene,
+                                                std::optional<std::uint32_t> max_bounces = std::nullopt) {
   Settings truth;
   truth.method = Method::kReference;
   truth.derivatives = Derivatives::kNone;
-  truth.max_bounces = settings.max_bounces;
-  const auto expected = Render(scene, truth).field;
-  const auto field = Render(scene, settings).field;
+  truth.max_bounces = max_bounces;
+  return Render(scene, truth).field;
+}
+
+inline Difference DifferenceOf(const Field& field, const Field& truth) {
   Difference difference;
   double count = 0;
-  for (std::size_t p = 0; p < field->probes.size(); ++p) {
-    EXPECT_EQ(field->probes[p].irradiance.size(), expected->probes[p].irradiance.size());
-    const std::vector<double>& truths = expected->probes[p].irradiance;
+  for (std::size_t p = 0; p < field.probes.size(); ++p) {
+    EXPECT_EQ(field.probes[p].irradiance.size(), truth.probes[p].irradiance.size());
+    const std::vector<double>& truths = truth.probes[p].irradiance;
     const double mean = std::accumulate(truths.begin(), truths.end(), 0.0) / static_cast<double>(truths.size());
     for (std::size_t i = 0; i < truths.size(); ++i) {
-      const double off = std::abs(field->probes[p].irradiance[i] - truths[i]) / std::max(truths[i], 0.01 * mean);
+      const double off = std::abs(field.probes[p].irradiance[i] - truths[i]) / std::max(truths[i], 0.01 * mean);
       difference.largest = std::max(difference.largest, off);
       difference.rms += off * off;
       ++count;
@@ -54,6 +59,10 @@ inline Difference FromReference(const std::shared_ptr<const Scene>& scene, const
   }
   difference.rms = std::sqrt(difference.rms / count);
   return difference;
+}
+
+inline Difference FromReference(const std::shared_ptr<const Scene>& scene, const Settings& settings) {
+  return DifferenceOf(*Render(scene, settings).field, *ReferenceOf(scene, settings.max_bounces));
 }
 
 // Of the points: where the error is more than so many times its estimate.

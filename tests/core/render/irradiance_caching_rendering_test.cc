@@ -85,10 +85,7 @@ TEST(IrradianceCachingRenderingTest, EstimatesHold) {
   round.Arc("sun", {{-0.25, 0.1}, 0.15, 0, -6.283185307179586}, {.reflectance = {0.1}, .radiance = {3}});
   round.Arc("moon", {{0.4, -0.2}, 0.25, 1, -2.5}, {.reflectance = {0.6}}).Probe("ring", 300);
   for (const auto& scene : {DividedRoom().Build(), round.Build(), ReflectingFloor(true, true).Build()}) {
-    Settings truth;
-    truth.method = Method::kReference;
-    truth.derivatives = Derivatives::kNone;
-    const auto expected = Render(scene, truth).field;
+    const auto expected = ReferenceOf(scene);
     for (const double tolerance : {0.03, 0.003}) {
       for (const std::uint32_t degree : {1u, 2u}) {
         Settings settings = Caching();
