@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // flatlightd: the server as a program.
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -31,6 +32,14 @@ int Fail(const absl::Status& why, int exit_status) {
   return exit_status;
 }
 
+// Each watcher is a file: as many as the system lets this process have.
+void RaiseFileLimit() {
+  rlimit files{};
+  if (getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+  files.rlim_cur = files.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &files);
+}
+
 int Run(const DaemonOptions& options) {
   if (!options.back_up_to.empty() || !options.restore_from.empty()) {
     const absl::Status done = !options.back_up_to.empty() ? BackUp(options.data, options.back_up_to)
@@ -51,6 +60,7 @@ int Run(const DaemonOptions& options) {
     if (!token.ok()) return Fail(token.status(), kBadUsage);
     server_options.token = *std::move(token);
   }
+  RaiseFileLimit();
   const ShutdownSignals signals;
   const auto server = Server::Start(server_options);
   if (!server.ok()) {

@@ -49,21 +49,25 @@ void Accounts::Charge(const std::string& user, double cpu_seconds) {
   if (const auto entry = accounts_.find(user); entry != accounts_.end()) entry->second.attained += cpu_seconds;
 }
 
-void Accounts::TakePlace(const std::string& user) {
-  ++places_[user];
+void Accounts::TakePlace(const std::string& user, JobClass job_class) {
+  ++places_[user][static_cast<std::size_t>(job_class)];
   ++all_places_;
 }
 
-void Accounts::GivePlace(const std::string& user) {
+void Accounts::GivePlace(const std::string& user, JobClass job_class) {
   const auto entry = places_.find(user);
   FLATLIGHT_DCHECK(entry != places_.end());
   --all_places_;
-  if (--entry->second == 0) places_.erase(entry);
+  --entry->second[static_cast<std::size_t>(job_class)];
+  if (PlacesOf(user, static_cast<JobClass>(kJobClasses - 1)) == 0) places_.erase(entry);
 }
 
-std::size_t Accounts::PlacesOf(const std::string& user) const {
+std::size_t Accounts::PlacesOf(const std::string& user, JobClass job_class) const {
   const auto entry = places_.find(user);
-  return entry == places_.end() ? 0 : entry->second;
+  if (entry == places_.end()) return 0;
+  std::size_t places = 0;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(job_class); ++i) places += entry->second[i];
+  return places;
 }
 
 Accounts::Rank Accounts::RankOf(const std::string& user) const {

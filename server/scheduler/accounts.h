@@ -2,11 +2,14 @@
 #ifndef FLATLIGHT_SERVER_SCHEDULER_ACCOUNTS_H_
 #define FLATLIGHT_SERVER_SCHEDULER_ACCOUNTS_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
+
+#include "server/store/job_class.h"
 
 namespace flatlight {
 
@@ -28,9 +31,10 @@ class Accounts {
   void Charge(const std::string& user, double cpu_seconds);
 
   // One of the user's jobs begins to hold one of the server's places, or gives it back.
-  void TakePlace(const std::string& user);
-  void GivePlace(const std::string& user);
-  std::size_t PlacesOf(const std::string& user) const;
+  void TakePlace(const std::string& user, JobClass job_class);
+  void GivePlace(const std::string& user, JobClass job_class);
+  // Held by jobs of the class and of more urgent ones.
+  std::size_t PlacesOf(const std::string& user, JobClass job_class) const;
   std::size_t places() const { return all_places_; }
 
   // Of a user who is not there: as if they came now.
@@ -45,8 +49,9 @@ class Accounts {
 
   double LeastAttained() const;
 
-  std::map<std::string, Account> accounts_;    // Of those who have jobs.
-  std::map<std::string, std::size_t> places_;  // None of them 0.
+  std::map<std::string, Account> accounts_;  // Of those who have jobs.
+  using Places = std::array<std::size_t, kJobClasses>;
+  std::map<std::string, Places> places_;  // None of them without any.
   std::size_t all_places_ = 0;
   // Of those who have left with more than the level: what they had. Coming and going clears no debt.
   std::map<std::string, double> absent_;

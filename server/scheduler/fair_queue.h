@@ -31,7 +31,7 @@ class FairQueue {
   void Push(const Place& place, Item item) { LineOf(place).Push(place.user, std::move(item)); }
   bool Remove(const Place& place, const Item& item) { return LineOf(place).Remove(place.user, item); }
 
-  // `rank(user)` is an optional: the least comes first, and who has none is passed over.
+  // `rank(user, class)` is an optional: the least comes first, and who has none is passed over.
   template <class Rank>
   std::optional<Item> Pop(const Rank& rank) {
     return PopFromClass(0, rank);
@@ -41,9 +41,9 @@ class FairQueue {
   template <class Rank>
   std::vector<Item> InTurn(const Rank& rank) const {
     std::vector<Item> items;
-    for (const Lane& lane : lanes_) {
-      for (const auto* queues : {&lane.newcomers, &lane.others}) {
-        for (Item& item : queues->InTurn(rank)) items.push_back(std::move(item));
+    for (std::size_t i = 0; i < kJobClasses; ++i) {
+      for (const auto* queues : {&lanes_[i].newcomers, &lanes_[i].others}) {
+        for (Item& item : queues->InTurn(OfClass(i, rank))) items.push_back(std::move(item));
       }
     }
     return items;
@@ -71,6 +71,11 @@ class FairQueue {
     return place.newcomer ? lane.newcomers : lane.others;
   }
 
+  template <class Rank>
+  static auto OfClass(std::size_t i, const Rank& rank) {
+    return [i, &rank](const std::string& user) { return rank(user, static_cast<JobClass>(i)); };
+  }
+
   bool LowerClassWaits(std::size_t i) const {
     for (std::size_t j = i + 1; j < kJobClasses; ++j) {
       if (lanes_[j].size() > 0) return true;
@@ -88,7 +93,7 @@ class FairQueue {
       lane.turns = 0;
       if (auto item = PopFromClass(i + 1, rank)) return item;
     }
-    if (auto item = PopFrom(lane, rank)) {
+    if (auto item = PopFrom(lane, OfClass(i, rank))) {
       lane.turns = others_wait ? lane.turns + 1 : 0;
       return item;
     }

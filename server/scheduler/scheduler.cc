@@ -104,8 +104,8 @@ void Scheduler::Admit() {
   while (accounts_.places() < options_.max_running_jobs) {
     const std::size_t free = options_.max_running_jobs - accounts_.places();
     using Rank = std::pair<std::size_t, Accounts::Rank>;
-    const auto run = waiting_.Pop([&](const std::string& user) -> std::optional<Rank> {
-      const std::size_t places = accounts_.PlacesOf(user);
+    const auto run = waiting_.Pop([&](const std::string& user, JobClass job_class) -> std::optional<Rank> {
+      const std::size_t places = accounts_.PlacesOf(user, job_class);
       if (places >= free) return std::nullopt;
       return Rank(places, accounts_.RankOf(user));
     });
@@ -113,7 +113,7 @@ void Scheduler::Admit() {
     pace_.NoteAdmission(now);
     (*run)->stage = JobRun::Stage::kPreparing;
     (*run)->state.queue.reset();
-    accounts_.TakePlace((*run)->spec->owner);
+    accounts_.TakePlace((*run)->spec->owner, (*run)->spec->job_class);
     if (options_.events != nullptr) {
       options_.events->Admitted(*(*run)->spec, (*run)->stopwatch.Now() - (*run)->entered);
     }
@@ -133,8 +133,9 @@ void Scheduler::TellPlaces() {
   const auto now = std::chrono::system_clock::now();
   const std::size_t free = options_.max_running_jobs - accounts_.places();
   std::size_t ahead = 0;
-  for (const RunPtr& run : waiting_.InTurn(
-           [&](const std::string& user) { return std::pair(accounts_.PlacesOf(user), accounts_.RankOf(user)); })) {
+  for (const RunPtr& run : waiting_.InTurn([&](const std::string&user, JobClass job_class) {
+         return std::pair(accounts_.PlacesOf(user, job_class), accounts_.RankOf(user));
+       })) {
     QueuePlace place;
     place.reason = free > 0 ? QueuePlace::Reason::kOwnJobs : QueuePlace::Reason::kServerFull;
     place.ahead = ahead++;
@@ -167,7 +168,7 @@ void Scheduler::TellListener() {
 }
 
 void Scheduler::End(JobRun& run, JobPhase phase) {
-  if (run.has_place()) accounts_.GivePlace(run.spec->owner);
+  if (run.has_place()) accounts_.GivePlace(run.spec->owner, run.spec->job_class);
   if (run.state.phase != JobPhase::kPaused) accounts_.Leave(run.spec->owner);
   run.stage = JobRun::Stage::kEnded;
   // A large scene takes a while to free: not under the lock.
@@ -205,6 +206,14 @@ void Scheduler::RequestCancel(const RunPtr& run) {
     urgent_.push_back(run);
     ready_changed_.notify_one();
   }
+}
+
+void Scheduler::RequestCancel(const JobId& id) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const RunPtr run = Find(id)) RequestCancel(run);
+  }
+  TellListener();
 }
 
 absl::StatusOr<JobRecord> Scheduler::Cancel(const JobId& id) {
@@ -341,7 +350,7 @@ std::vector<JobId> Scheduler::Unended(std::size_t most) {
 }
 
 void Scheduler::Suspend(JobRun& run) {
-  if (run.has_place()) accounts_.GivePlace(run.spec->owner);
+  if (run.has_place()) accounts_.GivePlace(run.spec->owner, run.spec->job_class);
   if (run.state.phase != JobPhase::kPaused) accounts_.Leave(run.spec->owner);
   run.stage = JobRun::Stage::kEnded;
   run.pause_wanted = false;

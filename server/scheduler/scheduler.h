@@ -35,8 +35,9 @@ namespace flatlight {
 struct SchedulerOptions {
   int runners = 1;   // Slices at once. More than one keeps processors busy when jobs use few threads.
   int starters = 1;  // Renderings prepared at once (acceleration structures), beside the slices.
-  // Places. Later jobs wait in the state QUEUED, and so do those of a user who holds as many places as are free: there
-  // is always one for who comes anew (dynamic thresholds: Choudhury, Hahne 1998). Paused jobs keep theirs.
+  // Places. Later jobs wait in the state QUEUED, and so do those of a user whose jobs of the same or a more urgent
+  // class hold as many places as are free: there is always one for who comes anew, and for a picture beside one's own
+  // regrading (dynamic thresholds: Choudhury, Hahne 1998). Paused jobs keep theirs.
   std::size_t max_running_jobs = 200;
   std::size_t max_jobs_per_user = 1000;                      // That have not ended.
   Clock::Duration queue_interval = std::chrono::seconds(1);  // Between what a waiting job is told of its place.
@@ -73,6 +74,8 @@ class Scheduler {
   // being prepared (for a million curves about a second's work) is prepared to its end, for nothing, after the job has
   // ended.
   absl::StatusOr<JobRecord> Cancel(const JobId& id);
+  // Does not wait for the end. Nothing happens to a job that has ended.
+  void RequestCancel(const JobId& id);
   // No slice of the job runs after the return, until Resume; its time stands still. FAILED_PRECONDITION if it has
   // ended.
   absl::StatusOr<JobRecord> Pause(const JobId& id);

@@ -40,7 +40,8 @@ void Scheduler::PrepareNext() {
   RunPtr run;
   {
     const std::lock_guard lock(mutex_);
-    const auto next = preparing_.Pop([&](const std::string& user) { return std::optional(accounts_.RankOf(user)); });
+    const auto next =
+        preparing_.Pop([&](const std::string& user, JobClass) { return std::optional(accounts_.RankOf(user)); });
     if (!next) return;
     run = *next;
     if (run->stage == JobRun::Stage::kEnded) return;
@@ -167,7 +168,8 @@ Scheduler::RunPtr Scheduler::NextReady() {
     urgent_.pop_front();
     return run;
   }
-  return ready_.Pop([&](const std::string& user) { return std::optional(accounts_.RankOf(user)); }).value_or(nullptr);
+  return ready_.Pop([&](const std::string& user, JobClass) { return std::optional(accounts_.RankOf(user)); })
+      .value_or(nullptr);
 }
 
 void Scheduler::RunSlices() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/render_service.h"
 
+#include <functional>
 #include <memory>
 
 #include "server/service/call.h"
@@ -114,7 +115,11 @@ absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context
   // Slow enough rates mean: only the first state and the last.
   const double seconds = std::min(1 / rate, 1e6);
   const auto interval = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
-  auto watcher = std::make_shared<Watcher>(hub_, *id, known, interval);
+  std::function<void()> on_disconnect;
+  if (request.cancel_on_disconnect()) {
+    on_disconnect = [this, id = *id] { backend_.scheduler.RequestCancel(id); };
+  }
+  auto watcher = std::make_shared<Watcher>(hub_, *id, known, interval, std::move(on_disconnect));
   if (absl::Status added = hub_.Add(*id, watcher); !added.ok()) return added;
   if (known) ++hub_.counts().resumed;
   return watcher;

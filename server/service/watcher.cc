@@ -105,6 +105,7 @@ void Watcher::OnCancel() {
     const std::lock_guard lock(mutex_);
     broken_ = true;
   }
+  if (on_disconnect_ && !hub_.draining()) on_disconnect_();
   hub_.StepSoon(shared_from_this());
 }
 

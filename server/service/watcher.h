@@ -2,9 +2,11 @@
 #ifndef FLATLIGHT_SERVER_SERVICE_WATCHER_H_
 #define FLATLIGHT_SERVER_SERVICE_WATCHER_H_
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "absl/base/thread_annotations.h"
 #include "grpcpp/support/server_callback.h"
@@ -20,8 +22,10 @@ class Watcher final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public 
   using Time = WatchHub::Time;
 
   // `known`: what the reader has already. Updates begin at least `interval` apart, except the last one.
-  Watcher(WatchHub& hub, const JobId& job, WatchUpdate::Known known, std::chrono::nanoseconds interval)
-      : hub_(hub), job_(job), interval_(interval), known_(known) {}
+  // `on_disconnect`, which may be empty, is called at most once: when the reader goes while the server is up.
+  Watcher(WatchHub& hub, const JobId& job, WatchUpdate::Known known, std::chrono::nanoseconds interval,
+          std::function<void()> on_disconnect)
+      : hub_(hub), job_(job), interval_(interval), on_disconnect_(std::move(on_disconnect)), known_(known) {}
 
   // Writes, finishes or waits, as the job, the reader and the clock ask for. May be called at any time.
   void Step();
@@ -52,6 +56,7 @@ class Watcher final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public 
   WatchHub& hub_;
   const JobId job_;
   const std::chrono::nanoseconds interval_;
+  const std::function<void()> on_disconnect_;
 
   std::mutex mutex_;
   WatchUpdate::Known known_ ABSL_GUARDED_BY(mutex_);

@@ -3,121 +3,51 @@
 //   kills FLATLIGHTD [KILLS [SEED]]
 // Jobs of several methods and sizes are submitted all the while, each with a request id, and sent again if the server
 // was killed before it answered. In the end each must be there once, with the bits of a server that was not killed.
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <map>
-#include <memory>
 #include <random>
 #include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "flatlight/v1/render_service.grpc.pb.h"
-#include "google/protobuf/util/json_util.h"
-#include "grpcpp/create_channel.h"
+#include "tests/bench/bench_daemon.h"
 
 namespace flatlight {
 namespace {
 
 using std::chrono::milliseconds;
 
-[[noreturn]] void Die(const std::string& why) {
-  std::fprintf(stderr, "kills: %s\n", why.c_str());
-  std::exit(2);
-}
-
-// A flatlightd on a Unix socket; killed when it goes out of scope.
-class Daemon {
- public:
-  Daemon(const std::string& program, const std::string& folder, bool keep) {
-    const std::string address = "unix:" + folder + "/socket";
-    std::vector<std::string> arguments = {program, "--listen", address, "--threads", "2"};
-    if (keep) {
-      for (const char* argument : {"--data", "", "--checkpoint-interval", "0.05"}) arguments.emplace_back(argument);
-      arguments[6] = folder + "/data";
-    }
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    if (posix_spawn(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ) != 0) Die("cannot run " + program);
-    posix_spawn_file_actions_destroy(&actions);
-    grpc::ChannelArguments impatient;
-    for (const char* wait : {GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, GRPC_ARG_MIN_RECONNECT_BACKOFF_MS,
-                             GRPC_ARG_MAX_RECONNECT_BACKOFF_MS}) {
-      impatient.SetInt(wait, 20);
-    }
-    // Each daemon is reached by a connection of its own.
-    impatient.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
-    render_ =
-        v1::RenderService::NewStub(grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), impatient));
-  }
-  ~Daemon() { Kill(); }
-  Daemon(const Daemon&) = delete;
-  Daemon& operator=(const Daemon&) = delete;
-
-  void Kill() {
-    if (pid_ <= 0) return;
-    kill(pid_, SIGKILL);
-    waitpid(pid_, nullptr, 0);
-    pid_ = 0;
-  }
-  v1::RenderService::Stub& render() { return *render_; }
-
- private:
-  pid_t pid_ = 0;
-  std::unique_ptr<v1::RenderService::Stub> render_;
-};
-
-struct Context : grpc::ClientContext {
-  explicit Context(milliseconds limit = std::chrono::seconds(120)) {
-    set_wait_for_ready(true);
-    set_deadline(std::chrono::system_clock::now() + limit);
-  }
-};
-
-v1::CreateJobRequest Request(const std::string& json) {
-  v1::CreateJobRequest request;
-  if (!google::protobuf::util::JsonStringToMessage(json, &request).ok()) Die("bad request " + json);
-  return request;
-}
-
 std::vector<v1::CreateJobRequest> Requests() {
   const std::string picture =
       R"("probes": [{"name": "view", "fluence": {"min": {"x": 0.1, "y": 0.1}, "max": {"x": 0.9, "y": 0.9}, "width": 48, "height": 48}}])";
   return {
-      Request(R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PATH_TRACING", "samples": 128}})"),
-      Request(R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PATH_TRACING", "samples": 1024}})"),
-      Request(R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PATH_TRACING", "targetError": 0.1}})"),
-      Request(R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "RAY_TRACING", "samples": 256}})"),
-      Request(R"({"scene": {"name": "scenes/penumbra"}, "settings": {"method": "EXACT", "maxBounces": 0}})"),
-      Request(R"({"scene": {"name": "scenes/penumbra"}, "settings": {"method": "REFERENCE"}})"),
-      Request(R"({"scene": {"name": "scenes/penumbra"}, "settings": {"method": "IRRADIANCE_CACHING"}})"),
-      Request(R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "IRRADIANCE_CACHING", )"
-              R"("gather": "FROM_PHOTON_MAP", "maxRecords": 60}})"),
-      Request(R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PHOTON_MAPPING", "photons": 200000}})"),
-      Request(R"({"scene": {"name": "scenes/cornell", )" + picture +
-              R"(}, "settings": {"method": "PATH_TRACING", "samples": 64}})"),
-      Request(R"({"scene": {"name": "scenes/cornell", )" + picture +
-              R"(}, "settings": {"method": "PATH_TRACING", "targetError": 0.5}})"),
+      RequestFromJson(
+          R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PATH_TRACING", "samples": 128}})"),
+      RequestFromJson(
+          R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PATH_TRACING", "samples": 1024}})"),
+      RequestFromJson(
+          R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PATH_TRACING", "targetError": 0.1}})"),
+      RequestFromJson(
+          R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "RAY_TRACING", "samples": 256}})"),
+      RequestFromJson(R"({"scene": {"name": "scenes/penumbra"}, "settings": {"method": "EXACT", "maxBounces": 0}})"),
+      RequestFromJson(R"({"scene": {"name": "scenes/penumbra"}, "settings": {"method": "REFERENCE"}})"),
+      RequestFromJson(R"({"scene": {"name": "scenes/penumbra"}, "settings": {"method": "IRRADIANCE_CACHING"}})"),
+      RequestFromJson(R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "IRRADIANCE_CACHING", )"
+                      R"("gather": "FROM_PHOTON_MAP", "maxRecords": 60}})"),
+      RequestFromJson(
+          R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PHOTON_MAPPING", "photons": 200000}})"),
+      RequestFromJson(R"({"scene": {"name": "scenes/cornell", )" + picture +
+                      R"(}, "settings": {"method": "PATH_TRACING", "samples": 64}})"),
+      RequestFromJson(R"({"scene": {"name": "scenes/cornell", )" + picture +
+                      R"(}, "settings": {"method": "PATH_TRACING", "targetError": 0.5}})"),
   };
 }
 
 // The result without what tells of the time that it took; empty if it cannot be had.
 std::string FetchResult(v1::RenderService::Stub& render, const std::string& job) {
-  Context context;
+  CallContext context;
   v1::GetResultRequest request;
   request.set_name(job);
   const auto reader = render.GetResult(&context, request);
@@ -132,7 +62,7 @@ std::string FetchResult(v1::RenderService::Stub& render, const std::string& job)
 
 // Watches to the end; the state in which it ended.
 v1::Job::State AwaitEnd(v1::RenderService::Stub& render, const std::string& job) {
-  Context context;
+  CallContext context;
   v1::WatchJobRequest request;
   request.set_name(job);
   const auto reader = render.WatchJob(&context, request);
@@ -147,7 +77,7 @@ std::set<std::string> ListAll(v1::RenderService::Stub& render) {
   std::set<std::string> names;
   v1::ListJobsRequest request;
   while (true) {
-    Context context;
+    CallContext context;
     v1::ListJobsResponse page;
     if (!render.ListJobs(&context, request, &page).ok()) Die("cannot list jobs");
     for (const v1::Job& job : page.jobs()) names.insert(job.name());
@@ -172,7 +102,7 @@ void Submit(v1::RenderService::Stub& render, const std::vector<v1::CreateJobRequ
     Submitted& last = submitted.back();
     v1::CreateJobRequest request = requests[last.request];
     request.set_request_id(last.request_id);
-    Context context(std::chrono::seconds(2));
+    CallContext context(std::chrono::seconds(2));
     v1::Job job;
     if (!render.CreateJob(&context, request, &job).ok()) return;
     last.job = job.name();
@@ -182,13 +112,13 @@ void Submit(v1::RenderService::Stub& render, const std::vector<v1::CreateJobRequ
 
 int Run(const std::string& program, int kills, std::uint64_t seed) {
   const std::vector<v1::CreateJobRequest> requests = Requests();
-  std::string folder = (std::filesystem::temp_directory_path() / "flatlight-kills-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) Die("cannot make " + folder);
+  const TemporaryFolder folder;
+  const std::vector<std::string> kept = {"--data", folder.path() + "/data", "--checkpoint-interval", "0.05"};
   std::vector<std::string> expected;
   {
-    Daemon daemon(program, folder, false);
+    BenchDaemon daemon(program, folder.path());
     for (const v1::CreateJobRequest& request : requests) {
-      Context context;
+      CallContext context;
       v1::Job job;
       const grpc::Status created = daemon.render().CreateJob(&context, request, &job);
       if (!created.ok()) Die(created.error_message());
@@ -201,7 +131,7 @@ int Run(const std::string& program, int kills, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<Submitted> submitted;
   for (int i = 0; i < kills; ++i) {
-    Daemon daemon(program, folder, true);
+    BenchDaemon daemon(program, folder.path(), kept);
     const milliseconds life(random() % 800);
     std::thread killer([&] {
       std::this_thread::sleep_for(life);
@@ -212,7 +142,7 @@ int Run(const std::string& program, int kills, std::uint64_t seed) {
   }
   if (!submitted.empty() && submitted.back().job.empty()) submitted.pop_back();  // Never answered: it may be there.
 
-  Daemon daemon(program, folder, true);
+  BenchDaemon daemon(program, folder.path(), kept);
   const std::set<std::string> listed = ListAll(daemon.render());
   std::set<std::string> names;
   int lost = 0, altered = 0;
@@ -231,8 +161,6 @@ int Run(const std::string& program, int kills, std::uint64_t seed) {
                       static_cast<int>(listed.size() > names.size() + 1 ? listed.size() - names.size() - 1 : 0);
   std::printf("%d kills, %zu jobs accepted: %d lost, %d altered, %d doubled\n", kills, submitted.size(), lost, altered,
               doubled);
-  daemon.Kill();
-  std::filesystem::remove_all(folder);
   return lost + altered + doubled == 0 && submitted.size() * 4 > static_cast<std::size_t>(kills) ? 0 : 1;
 }
 
@@ -240,8 +168,7 @@ int Run(const std::string& program, int kills, std::uint64_t seed) {
 }  // namespace flatlight
 
 int main(int argc, char** argv) {
-  const std::string self = std::filesystem::path(argv[0]).parent_path().string();
-  const std::string program = argc > 1 ? argv[1] : (self.empty() ? "." : self) + "/../bin/flatlightd";
+  const std::string program = argc > 1 ? argv[1] : flatlight::DaemonBesides(argv[0]);
   const int kills = argc > 2 ? std::atoi(argv[2]) : 200;
   const std::uint64_t seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1;
   return flatlight::Run(program, kills, seed);

@@ -29,8 +29,10 @@ absl::Status CancelUnheard(Session& session, const v1::Job& job, const absl::Sta
 
 }  // namespace
 
-absl::StatusOr<v1::RenderResult> AwaitResult(Session& session, const v1::Job& job, Console& console) {
+absl::StatusOr<v1::RenderResult> AwaitResult(Session& session, const v1::Job& job, bool cancel_on_disconnect,
+                                             Console& console) {
   WatchOptions options;
+  options.cancel_on_disconnect = cancel_on_disconnect;
   options.max_rate = console.Rate();
   options.on_update = [&console](const v1::Job& update) {
     console.Show(update);

@@ -11,8 +11,9 @@
 namespace flatlight {
 
 // Shows a job's progress until it ends, and fetches its result. Ctrl-C, or a console that finds no reader any more,
-// cancels the job.
-absl::StatusOr<v1::RenderResult> AwaitResult(Session& session, const v1::Job& job, Console& console);
+// cancels the job; with `cancel_on_disconnect` so does a connection that breaks.
+absl::StatusOr<v1::RenderResult> AwaitResult(Session& session, const v1::Job& job, bool cancel_on_disconnect,
+                                             Console& console);
 
 }  // namespace flatlight
 

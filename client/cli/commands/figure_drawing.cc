@@ -42,7 +42,7 @@ absl::StatusOr<v1::RenderResult> RenderFirstProbe(Session& session, const v1::Sc
   Console silent(Console::Answer::kMachine, true);
   const auto job = CreateJob(session.connection(), source, settings);
   if (!job.ok()) return job.status();
-  auto result = AwaitResult(session, *job, silent);
+  auto result = AwaitResult(session, *job, /*cancel_on_disconnect=*/false, silent);
   if (!result.ok()) return result.status();
   result->mutable_probes()->DeleteSubrange(1, result->probes_size() - 1);
   return result;

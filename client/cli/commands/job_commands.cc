@@ -92,6 +92,7 @@ CommandResult Watch(const CommandLine& line, Interruption& interruption) {
   Console console(line.json || line.records ? Console::Answer::kMachine : Console::Answer::kText, line.quiet);
   WatchOptions options;
   options.max_rate = console.Rate();
+  options.cancel_on_disconnect = line.cancel_on_disconnect;
   if (line.records) {
     options.max_rate = 20;
     options.on_record = [](std::uint32_t, const v1::CacheRecord& record) { return PrintBytes(ToJsonLine(record)); };
@@ -102,6 +103,8 @@ CommandResult Watch(const CommandLine& line, Interruption& interruption) {
   };
   const auto job = WatchJob(connection, *name, options);
   console.EndProgress();
+  if (!job.ok() && interruption.Requested() && line.cancel_on_disconnect)
+    return InterruptedError("stopped watching; " + *name + " is cancelled");
   if (!job.ok() && interruption.Requested())
     return InterruptedError("stopped watching; the job goes on (flatlight cancel " + *name + " stops it)");
   if (!job.ok()) return job.status();

@@ -36,7 +36,7 @@ CommandResult Render(const CommandLine& line, Interruption& interruption) {
   console.Say("scene     " + Printable(job->scene()) + " (" + scene->label + ")\n" + ShortPlanText(job->plan()));
   if (!(*session)->is_private()) console.Say("job       " + job->name() + '\n');
 
-  const auto result = AwaitResult(**session, *job, console);
+  const auto result = AwaitResult(**session, *job, line.cancel_on_disconnect, console);
   if (!result.ok()) return (*session)->Explain(result.status());
   if (absl::Status delivered = DeliverResult(*result, *outputs, console, interruption); !delivered.ok())
     return delivered;

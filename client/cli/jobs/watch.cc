@@ -36,6 +36,7 @@ class Watch {
       : connection_(connection), options_(options) {
     request_.set_name(name);
     request_.set_max_rate(options.max_rate);
+    request_.set_cancel_on_disconnect(options.cancel_on_disconnect);
   }
 
   absl::StatusOr<v1::Job> Run() {

@@ -38,6 +38,11 @@ void AddJson(CLI::App& app, Raw& raw, const std::string& what) {
   app.add_flag("--json", raw.line.json, "print " + what + " as JSON on standard output");
 }
 
+void AddCancelOnDisconnect(CLI::App& app, Raw& raw) {
+  app.add_flag("--cancel-on-disconnect", raw.line.cancel_on_disconnect,
+               "the server cancels the job when it loses this command, however that ends");
+}
+
 void AddQuiet(CLI::App& app, Raw& raw) { app.add_flag("-q,--quiet", raw.line.quiet, "say nothing but errors"); }
 
 void AddScene(CLI::App& app, Raw& raw) {
@@ -165,6 +170,7 @@ void AddSceneCommands(CLI::App& app, Raw& raw) {
                       "begin with the records of a result (JSON) or of an ended job of the server (jobs/UUID)")
           ->type_name("FILE");
     }
+    if (render) AddCancelOnDisconnect(command, raw);
     if (render) AddOutputs(command, raw);
     if (submit) AddJobClass(command, raw);
     AddJson(command, raw, render ? "the result" : submit ? "the job" : "the plan");
@@ -186,6 +192,7 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   CLI::App& watch = AddCommand(app, "watch", "follow a job until it has ended", kWatchHelp);
   AddJob(watch, raw);
   AddJson(watch, raw, "the ended job");
+  AddCancelOnDisconnect(watch, raw);
   watch.add_flag("--records", raw.line.records, "print cache records as they are made: JSON, one a line");
   AddQuiet(watch, raw);
   CLI::App& jobs = AddCommand(app, "jobs", "list the jobs of a server");

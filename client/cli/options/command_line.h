@@ -23,6 +23,7 @@ struct CommandLine {
   bool quiet = false;
   std::string scene;                    // SCENE as written; of `scenes`, the name of one, or empty.
   std::string job;                      // JOB as written.
+  bool cancel_on_disconnect = false;    // Of `render` and `watch`.
   bool records = false;                 // Of `watch`: print them as they are made.
   bool once = false;                    // Of `top`.
   std::optional<double> prune_seconds;  // Of `jobs`: delete those that ended longer ago.

@@ -33,6 +33,7 @@ inline constexpr char kRenderHelp[] = R"(The ending of OUT picks its form:
   .exr .hdr    pictures of irradiance, a pixel a point; .exr has a part for each probe, .hdr a row
 Files are written under a temporary name and then renamed, so they are there whole or not at all.
 Ctrl-C cancels the job, and so does a reader of standard output that goes away (`| head`).
+A job goes on when the connection breaks, and is found again; with --cancel-on-disconnect the server cancels it then.
 
 Examples:
   flatlight render scene.json --samples 4096 -o result.json -o plot.png
@@ -46,7 +47,8 @@ Example:
   flatlight watch $job && flatlight fetch $job -o result.json)";
 
 inline constexpr char kWatchHelp[] =
-    R"(Waits until the job has ended, and takes up a broken connection again by itself. Ctrl-C stops watching; the job goes on.
+    R"(Waits until the job has ended, and takes up a broken connection again by itself. Ctrl-C stops watching; the job goes on,
+unless --cancel-on-disconnect says that the server shall cancel it when it loses this watch, however that comes about.
 With --records the log of irradiance caching's records goes to standard output, from its beginning and each record once,
 and all else to standard error. The radii of records become smaller as others join them: the result has the last ones.
 JOB is jobs/UUID, a UUID, or the beginning of one.)";

@@ -380,6 +380,26 @@ class EndToEnd(PictureReader, CliCase):
         self.assertFalse(os.path.exists(self.path("r.json")))
         self.assert_no_leftovers()
 
+    def test_a_killed_command_takes_its_job_along_if_it_said_so(self):
+        with Daemon(FLATLIGHTD) as daemon:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            process = self.start("render", *ENDLESS, "--cancel-on-disconnect")
+            job = re.search(r"jobs/\S+", self.read_until(process.stdout, "job  ")).group()
+            self.read_until(process.stdout, " %")
+            process.kill()
+            self.run_cli("watch", job, status=1)
+            process = self.start("render", *ENDLESS)
+            job = re.search(r"jobs/\S+", self.read_until(process.stdout, "job  ")).group()
+            self.read_until(process.stdout, " %")
+            process.kill()
+            process.wait(timeout=30)
+            self.assertEqual(json.loads(self.run_cli("show", job, "--json").stdout)["state"], "RUNNING")
+            process = self.start("watch", job, "--cancel-on-disconnect")
+            self.read_until(process.stdout, " %")
+            process.send_signal(signal.SIGINT)
+            self.assertIn(job + " is cancelled", process.stderr.read())
+            self.run_cli("watch", job, status=1)
+
     def test_ctrl_c_ends_a_private_server(self):
         for sent in (signal.SIGINT, signal.SIGHUP):
             process = self.start("render", *ENDLESS)

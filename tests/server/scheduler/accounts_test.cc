@@ -77,13 +77,16 @@ TEST(AccountsTest, CountsJobsAndPlaces) {
   accounts.Charge("ada", 1);
   accounts.Leave("ada");
   EXPECT_EQ(accounts.RankOf("ada").first, 1);  // Another job is still there.
-  accounts.TakePlace("ada");
-  accounts.TakePlace("ada");
-  accounts.TakePlace("bob");
-  accounts.GivePlace("ada");
-  EXPECT_EQ(accounts.PlacesOf("ada"), 1u);
-  EXPECT_EQ(accounts.PlacesOf("eve"), 0u);
-  EXPECT_EQ(accounts.places(), 2u);
+  accounts.TakePlace("ada", JobClass::kGraded);
+  accounts.TakePlace("ada", JobClass::kGraded);
+  accounts.TakePlace("ada", JobClass::kRegrade);
+  accounts.TakePlace("bob", JobClass::kInteractive);
+  accounts.GivePlace("ada", JobClass::kGraded);
+  EXPECT_EQ(accounts.PlacesOf("ada", JobClass::kInteractive), 0u);
+  EXPECT_EQ(accounts.PlacesOf("ada", JobClass::kGraded), 1u);
+  EXPECT_EQ(accounts.PlacesOf("ada", JobClass::kRegrade), 2u);
+  EXPECT_EQ(accounts.PlacesOf("eve", JobClass::kRegrade), 0u);
+  EXPECT_EQ(accounts.places(), 3u);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace {
 using ::testing::ElementsAre;
 
 // By name, if there is no other reason.
-std::optional<std::string> ByName(const std::string& user) { return user; }
+std::optional<std::string> ByName(const std::string& user, JobClass) { return user; }
 
 std::vector<std::string> PopAll(FairQueue<std::string>& queue, std::size_t count = 1000) {
   std::vector<std::string> items;
@@ -68,7 +68,7 @@ TEST(FairQueueTest, WhoHasNoRankIsPassedOver) {
   FairQueue<std::string> queue;
   queue.Push({JobClass::kInteractive, "ada", false}, "ada");
   queue.Push({JobClass::kGraded, "bob", false}, "bob");
-  const auto not_ada = [](const std::string& user) {
+  const auto not_ada = [](const std::string& user, JobClass) {
     return user == "ada" ? std::nullopt : std::optional<std::string>(user);
   };
   EXPECT_EQ(queue.Pop(not_ada), "bob");

@@ -77,6 +77,52 @@ TEST_F(ControlTest, AJobRestsAndGoesOn) {
   EXPECT_EQ(ReasonOf(status), "JOB_ENDED");
 }
 
+// Two watches of a job that is held up; the first ends in the middle. Returns the state that the second saw last.
+v1::Job::State StateAfterTheFirstWatchEnds(LoopbackServer& server, FakeRenderings& renderings, const std::string& job,
+                                           bool cancel_on_disconnect, std::chrono::milliseconds deadline) {
+  v1::WatchJobRequest request;
+  request.set_name(job);
+  TestContext staying;
+  const auto stays = server.render().WatchJob(&staying, request);
+  request.set_cancel_on_disconnect(cancel_on_disconnect);
+  grpc::ClientContext leaving;
+  if (deadline.count() > 0) leaving.set_deadline(std::chrono::system_clock::now() + deadline);
+  const auto leaves = server.render().WatchJob(&leaving, request);
+  v1::WatchJobResponse message;
+  leaves->Read(&message);
+  if (deadline.count() == 0) leaving.TryCancel();
+  const grpc::Status status = leaves->Finish();
+  EXPECT_EQ(status.error_code(),
+            deadline.count() > 0 ? grpc::StatusCode::DEADLINE_EXCEEDED : grpc::StatusCode::CANCELLED);
+  // Who is not cancelled goes on once it may.
+  if (!cancel_on_disconnect) renderings.Release();
+  v1::WatchJobResponse last;
+  while (stays->Read(&message)) {
+    if (message.has_job()) last = message;
+  }
+  EXPECT_TRUE(stays->Finish().ok());
+  return last.job().state();
+}
+
+TEST_F(ControlTest, AJobEndsWithTheWatchThatAsksForThat) {
+  using std::chrono::milliseconds;
+  LoopbackServer server(Options());
+  struct Case {
+    bool cancel_on_disconnect;
+    milliseconds deadline;  // 0: the caller cancels the watch.
+    v1::Job::State end;
+  };
+  for (const Case& c :
+       {Case{true, milliseconds(0), v1::Job::CANCELLED}, Case{true, milliseconds(100), v1::Job::CANCELLED},
+        Case{false, milliseconds(0), v1::Job::SUCCEEDED}}) {
+    renderings_.Hold();
+    v1::Job job;
+    TestContext creating;
+    ASSERT_TRUE(server.render().CreateJob(&creating, NewJob(v1::INTERACTIVE), &job).ok());
+    EXPECT_EQ(StateAfterTheFirstWatchEnds(server, renderings_, job.name(), c.cancel_on_disconnect, c.deadline), c.end);
+  }
+}
+
 TEST_F(ControlTest, AnUnknownClassIsRefused) {
   LoopbackServer server(Options());
   v1::Job job;
