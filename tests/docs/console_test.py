@@ -77,6 +77,7 @@ def check_page(page, bin_folder, folder):
     address = free_address()
     environment = {k: v for k, v in os.environ.items() if not k.startswith("FLATLIGHT_")}
     environment |= {"PATH": f"{bin_folder}:{environment['PATH']}", "LC_ALL": "C.UTF-8", "FLATLIGHT_TREE": str(ROOT)}
+    environment |= {"PYTHONPATH": str(pathlib.Path(bin_folder).parent / "python"), "PYTHONNOUSERSITE": "1"}
     blocks = markdown.blocks(page.read_text(encoding="utf-8"))
     for block in blocks:
         if block.title and (ROOT / block.title).exists():
