@@ -10,7 +10,8 @@ _COLOURS = ("tab:red", "tab:green", "tab:blue")
 
 def plot(result, quantity="irradiance", ax=None):
     """Draws irradiance, gradient, hessian or rotation_gradient of every probe over arc length, with a band of two errors;
-    with irradiance of irradiance caching, a mark at each record. Of a picture: the picture. Returns the axes."""
+    with irradiance of irradiance caching, a mark at each record (in colour: at the mean of the channels). Of a picture: the
+    picture. Returns the axes."""
     if quantity not in _UNITS:
         raise BadRequest(f"quantity: is {quantity!r}; allowed: {', '.join(_UNITS)}")
     ax = ax or _new_axes()

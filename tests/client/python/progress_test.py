@@ -23,7 +23,7 @@ class Terminal(io.StringIO):
 
 class ProgressTest(unittest.TestCase):
     def test_a_line_says_how_far_how_well_how_fast_how_long(self):
-        job = snapshot(0.999, relative_error=0.0123, rays=3e6, elapsed_seconds=2, remaining_seconds=4.2, records=7).job
+        job = snapshot(1, relative_error=0.0123, rays=3e6, elapsed_seconds=2, remaining_seconds=4.2, records=7).job
         self.assertEqual(details(job), " 99 %  error 1.2 %  7 records  1.5 M rays/s  4.2 s left")
         self.assertEqual(details(snapshot(1, api.Job.SUCCEEDED).job), "100 %")
         self.assertEqual(details(snapshot(0.5, api.Job.PAUSED).job), " 50 %  paused")
