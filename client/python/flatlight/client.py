@@ -13,6 +13,7 @@ from flatlight.v1 import (render_service_pb2, render_service_pb2_grpc, scene_ser
                           server_service_pb2, server_service_pb2_grpc)
 
 _ADDRESS = re.compile(r"unix:.+|(\[[0-9a-fA-F:.]+\]|[^:/\[\]]+):[0-9]{1,5}")
+_LOCAL = re.compile(r"unix:|localhost:|127\.|\[::1\]")
 _DEADLINE = 60  # s, of a call that is no stream.
 
 
@@ -40,12 +41,18 @@ class Client:
 
     def reconnect(self):
         """Makes a connection anew, for calls from now on. A peer that vanished without a word is never missed by TCP."""
-        # A server that was down is tried again at once, not after the doubling waits of gRPC: watches have their own.
-        # Without a pool of its own the channel would be given the old connection.
-        self._channel = grpc.insecure_channel(self.address, options=[("grpc.initial_reconnect_backoff_ms", 50),
-                                                                     ("grpc.min_reconnect_backoff_ms", 50),
-                                                                     ("grpc.max_reconnect_backoff_ms", 1000),
-                                                                     ("grpc.use_local_subchannel_pool", 1)])
+        options = {
+            # The server bounds what it sends.
+            "grpc.max_receive_message_length": -1,
+            # gRPC's waits are long for a server that is just starting. The least is also how long a try may take.
+            "grpc.initial_reconnect_backoff_ms": 20,
+            "grpc.min_reconnect_backoff_ms": 1000,
+            "grpc.max_reconnect_backoff_ms": 1000,
+            # Without a pool of its own the channel would be given the old connection.
+            "grpc.use_local_subchannel_pool": 1,
+            "grpc.enable_http_proxy": 0 if _LOCAL.match(self.address) else 1,
+        }
+        self._channel = grpc.insecure_channel(self.address, options=list(options.items()))
         self.render_service = render_service_pb2_grpc.RenderServiceStub(self._channel)
         self.scene_service = scene_service_pb2_grpc.SceneServiceStub(self._channel)
         self.server_service = server_service_pb2_grpc.ServerServiceStub(self._channel)

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The package against a real server: jobs, results as arrays, errors."""
 import json
+import os
 import subprocess
 import uuid
+from unittest import mock
 
 import flatlight
 import numpy as np
@@ -126,6 +128,12 @@ class ClientTest(PythonCase):
         wanted = flatlight.settings(method="path-tracing", target_error=0.5, no_skip="colour")
         self.assertEqual(flatlight.settings(method="PATH_TRACING", targetError=0.5, **{"no-skip": ["colour"]}), wanted)
         self.assertEqual(flatlight.settings(method="path-tracing", target_error=0.5, no_skip="colour", seed=None), wanted)
+
+    def test_no_proxy_stands_before_a_server_on_this_machine(self):
+        address = self.serve().address
+        with mock.patch.dict(os.environ, {"http_proxy": "http://127.0.0.1:1", "no_proxy": "", "no_grpc_proxy": ""}):
+            self.connect(address).capabilities()
+            self.connect(address.replace("127.0.0.1", "localhost")).capabilities()
 
     def test_a_token_is_asked_for(self):
         daemon = self.serve(token="secret of a test of the package")
