@@ -49,12 +49,14 @@ class WatchTest(PythonCase):
         with Proxy(self.serve().address) as proxy:
             client = self.connect(proxy.address)
             job = client.submit(**ENDLESS)
+            others = client.render_service  # Another thread's call holds the old connection.
             for number, last in enumerate(job.watch(silence=0.5)):
                 if number == 0:
                     proxy.silence()
                 elif last.resumes:
                     break
             self.assertGreaterEqual(last.resumes, 1)
+            self.assertIsNot(client.render_service, others)
 
     def test_a_restarted_server_goes_on_with_the_same_bits(self):
         data = self.path("data")
