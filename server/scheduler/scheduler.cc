@@ -81,6 +81,10 @@ void Scheduler::Enter(const RunPtr& run) {
   untold_.push_back(run->spec->id);
   run->entered = run->stopwatch.Now();
   runs_[run->spec->id] = run;
+  if (run->state.phase == JobPhase::kPaused) {  // In a process before: it takes no place until it is resumed.
+    run->stopwatch.Stop();
+    return;
+  }
   accounts_.Enter(run->spec->owner);
   waiting_.Push(run->Entry(), run);
   Admit();
@@ -266,6 +270,7 @@ absl::StatusOr<JobRecord> Scheduler::Pause(const JobId& id) {
     }
   }
   TellListener();
+  if (absl::Status saved = store_.SavePause(id); !saved.ok()) return saved;
   auto job = store_.Get(id);
   if (job.ok() && HasEnded(job->state->phase)) {
     return MakeError(absl::StatusCode::kFailedPrecondition, "JOB_ENDED", id.Name() + " has ended: it cannot be paused");
@@ -293,6 +298,7 @@ absl::StatusOr<JobRecord> Scheduler::Resume(const JobId& id) {
     }
   }
   TellListener();
+  if (absl::Status saved = store_.SavePause(id); !saved.ok()) return saved;
   auto job = store_.Get(id);
   if (job.ok() && had_ended) {
     return MakeError(absl::StatusCode::kFailedPrecondition, "JOB_ENDED", id.Name() + " has ended: it cannot go on");

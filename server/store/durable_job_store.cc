@@ -48,6 +48,11 @@ absl::StatusOr<std::vector<JobRecord>> DurableJobStore::Restore() {
   for (const ArchivedJob& job : *unfinished) {
     auto record = format_.Read(job, nullptr);
     if (!record.ok()) return record.status();
+    if (job.paused) {
+      auto state = std::make_shared<JobState>(*record->state);
+      state->phase = JobPhase::kPaused;
+      record->state = std::move(state);
+    }
     if (const auto inserted = memory_.Insert(*record, {}, std::nullopt); !inserted.ok()) return inserted.status();
     jobs.push_back(*std::move(record));
   }
@@ -80,6 +85,15 @@ absl::Status DurableJobStore::Update(const JobRecord& job) {
   }
   wake_.notify_one();
   return absl::OkStatus();
+}
+
+absl::Status DurableJobStore::SavePause(const JobId& id) {
+  const std::lock_guard lock(pausing_);
+  const auto job = memory_.Get(id);
+  if (!job.ok() || HasEnded(job->state->phase)) return absl::OkStatus();
+  const absl::Status written = archive_.SavePause(id, job->state->phase == JobPhase::kPaused);
+  NoteHealth(written);
+  return written;
 }
 
 absl::StatusOr<JobRecord> DurableJobStore::Read(const JobId& id, bool whole) {

@@ -48,8 +48,8 @@ class DurableJobStore final : public JobStore {
   // Writes what is to be written, as far as it can be; no jobs must end, and no checkpoints come, from then on.
   void Close();
 
-  // The jobs that had not ended when the process before did, oldest first: QUEUED, at sequence 0, and from now on in
-  // this store. To be called once, first.
+  // The jobs that had not ended when the process before did, oldest first: QUEUED or PAUSED, at sequence 0, and from
+  // now on in this store. To be called once, first.
   absl::StatusOr<std::vector<JobRecord>> Restore();
 
   absl::StatusOr<std::optional<JobId>> FindRequest(const RequestKey& key) override;
@@ -63,6 +63,7 @@ class DurableJobStore final : public JobStore {
   bool durable() const override { return true; }
   absl::StatusOr<JobRecord> AwaitEnd(const JobId& id) override;
   absl::StatusOr<std::shared_ptr<const std::string>> WrittenResult(const JobId& id) override;
+  absl::Status SavePause(const JobId& id) override;
   void SaveCheckpoint(const JobId& id, std::string checkpoint, std::function<void(double)> saved) override;
 
  private:
@@ -92,6 +93,7 @@ class DurableJobStore final : public JobStore {
   const std::function<void(const JobId&)> ended_;
   const std::function<void(const absl::Status&)> tell_health_;
 
+  std::mutex pausing_;  // One after the other reads a job's state and writes it, so that the newest one stays.
   std::mutex mutex_;
   std::condition_variable wake_;
   std::condition_variable shown_;

@@ -10,7 +10,7 @@ namespace {
 
 using Writing = Storage::Writing;
 
-constexpr char kColumns[] = "SELECT uuid, owner, message, sequence, result, number FROM jobs ";
+constexpr char kColumns[] = "SELECT uuid, owner, message, sequence, result, number, paused FROM jobs ";
 
 std::int64_t SecondsOf(WallTime time) {
   return std::chrono::duration_cast<std::chrono::seconds>(time.time_since_epoch()).count();
@@ -23,6 +23,7 @@ ArchivedJob JobOf(const Statement& row) {
   job.message = row.Bytes(2);
   job.sequence = static_cast<std::uint64_t>(row.Integer(3));
   job.result = row.OptionalBytes(4);
+  job.paused = !job.ended() && row.Integer(6) != 0;
   return job;
 }
 
@@ -134,6 +135,15 @@ absl::Status JobArchive::SaveCheckpoint(const JobId& id, std::string checkpoint)
         .Bind(std::string_view(blob->sha256))
         .Bind(std::string_view(build_))
         .Bind(job.Integer(0))
+        .Run();
+  });
+}
+
+absl::Status JobArchive::SavePause(const JobId& id, bool paused) {
+  return storage_.Write([&](Writing& writing) {
+    return writing.Prepare("UPDATE jobs SET paused = ? WHERE uuid = ? AND sequence = 0")
+        .Bind(std::int64_t{paused})
+        .Bind(std::string_view(id.uuid()))
         .Run();
   });
 }

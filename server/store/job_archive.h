@@ -24,6 +24,7 @@ struct ArchivedJob {
   std::string message;                // As it was accepted, or as it ended.
   std::uint64_t sequence = 0;         // Of that state; 0: it has not ended.
   std::optional<std::string> result;  // The hash of it.
+  bool paused = false;                // Of one that has not ended.
   bool ended() const { return sequence > 0; }
 };
 
@@ -40,6 +41,8 @@ class JobArchive {
                                const Submission& submission, const std::optional<RequestKey>& key, WallTime now);
   // Replaces the one before.
   absl::Status SaveCheckpoint(const JobId& id, std::string checkpoint);
+  // Whether a job that has not ended is paused. Nothing happens to one that has ended, or is gone.
+  absl::Status SavePause(const JobId& id, bool paused);
   // The last change of a job: nothing remains but message and result. `sequence` > 0.
   absl::Status End(const JobId& id, std::string message, std::uint64_t sequence, std::optional<std::string> result,
                    WallTime now);

@@ -68,6 +68,8 @@ class JobStore {
   virtual absl::StatusOr<JobRecord> AwaitEnd(const JobId& id) { return Get(id); }
   // The result as it was written; null if it has not been.
   virtual absl::StatusOr<std::shared_ptr<const std::string>> WrittenResult(const JobId& /*id*/) { return nullptr; }
+  // Of a store that outlives the process: writes whether the job is paused, as its newest state has it.
+  virtual absl::Status SavePause(const JobId& /*id*/) { return absl::OkStatus(); }
   // Writes a checkpoint soon, on another thread, and tells how long it worked on it. s.
   virtual void SaveCheckpoint(const JobId& id, std::string checkpoint, std::function<void(double)> saved);
 };

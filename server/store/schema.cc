@@ -62,6 +62,8 @@ CREATE TABLE memberships(
 ) WITHOUT ROWID;
 )sql";
 
+constexpr char kPauses[] = "ALTER TABLE jobs ADD COLUMN paused INTEGER NOT NULL DEFAULT 0;";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -72,7 +74,7 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs, kScenes, kUsers};
+  static const std::vector<std::string> kMigrations = {kJobs, kScenes, kUsers, kPauses};
   return kMigrations;
 }
 

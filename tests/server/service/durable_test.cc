@@ -61,6 +61,16 @@ class DurableTest : public ::testing::Test {
     EXPECT_TRUE(status.ok()) << status.error_message();
     return job;
   }
+  template <typename Request>
+  v1::Job Control(grpc::Status (v1::RenderService::Stub::*call)(grpc::ClientContext*, const Request&, v1::Job*),
+                  Request request, const std::string& name) {
+    TestContext context;
+    request.set_name(name);
+    v1::Job job;
+    const grpc::Status status = (server_->render().*call)(&context, request, &job);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return job;
+  }
   // All that a watcher hears, put together: the last job, and the values of the first probe.
   struct Watched {
     v1::Job job;
@@ -179,6 +189,42 @@ TEST_F(DurableTest, AJobGoesOnFromWhereItWas) {
   EXPECT_EQ(Watch(name).job.state(), v1::Job::SUCCEEDED);
   EXPECT_EQ(Irradiance(FetchBytes(name)), Irradiance(whole));
   EXPECT_EQ(Get(name).start_time().seconds(), before.start_time().seconds());
+}
+
+TEST_F(DurableTest, APausedJobRestsAcrossRestartsAndGoesOnWithTheSameBits) {
+  server_ = std::make_unique<LoopbackServer>();  // Without a folder.
+  constexpr std::uint32_t kSamples = 20'000;
+  const std::string whole_name = Create(Request(kSamples)).name();
+  Watch(whole_name);
+  const std::string whole = FetchBytes(whole_name);
+  ServerOptions options = Options();
+  options.limits.max_running_jobs = 1;
+  Restart(options);
+  const std::string name = Create(Request(kSamples)).name();
+  EXPECT_EQ(Control(&v1::RenderService::Stub::PauseJob, v1::PauseJobRequest(), name).state(), v1::Job::PAUSED);
+  const std::string resumed = Create(Request(64)).name();
+  Control(&v1::RenderService::Stub::PauseJob, v1::PauseJobRequest(), resumed);
+  Control(&v1::RenderService::Stub::ResumeJob, v1::ResumeJobRequest(), resumed);
+  for (int restarts = 0; restarts < 2; ++restarts) {
+    Restart(options);
+    EXPECT_EQ(Get(name).state(), v1::Job::PAUSED);
+    // The only place is free for others.
+    EXPECT_EQ(Watch(Create(Request(64)).name()).job.state(), v1::Job::SUCCEEDED);
+    EXPECT_EQ(Watch(resumed).job.state(), v1::Job::SUCCEEDED);
+  }
+  EXPECT_NE(Control(&v1::RenderService::Stub::ResumeJob, v1::ResumeJobRequest(), name).state(), v1::Job::PAUSED);
+  EXPECT_EQ(Watch(name).job.state(), v1::Job::SUCCEEDED);
+  EXPECT_EQ(Irradiance(FetchBytes(name)), Irradiance(whole));
+}
+
+TEST_F(DurableTest, APausedJobCanBeCancelledAfterARestart) {
+  Restart(Options());
+  const std::string name = Create(Request(1'000'000)).name();
+  Control(&v1::RenderService::Stub::PauseJob, v1::PauseJobRequest(), name);
+  Restart(Options());
+  EXPECT_EQ(Control(&v1::RenderService::Stub::CancelJob, v1::CancelJobRequest(), name).state(), v1::Job::CANCELLED);
+  Restart(Options());
+  EXPECT_EQ(Get(name).state(), v1::Job::CANCELLED);
 }
 
 TEST_F(DurableTest, QueuedJobsCanBeCancelledAndWatchedBeforeTheirTurnComesAgain) {
