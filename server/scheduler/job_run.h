@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -24,6 +25,7 @@ namespace flatlight {
 // A job that has not ended, as the scheduler sees it. Guarded by the scheduler's mutex, but for what is said otherwise.
 struct JobRun {
   enum class Stage : std::uint8_t {
+    kFollowing,  // Another run does its work: see `leader`.
     kWaiting,    // For a place; in `waiting_`, unless it is paused.
     kPreparing,  // Its index is made, or it waits for that.
     kReady,      // For a slice; in `ready_` or `urgent_`, unless it is paused.
@@ -41,7 +43,9 @@ struct JobRun {
 
   explicit JobRun(const Clock& clock) : stopwatch(clock) {}
 
-  bool has_place() const { return stage != Stage::kWaiting && stage != Stage::kEnded; }
+  bool has_place() const {
+    return stage == Stage::kPreparing || stage == Stage::kReady || stage == Stage::kSlicing;
+  }
   // Where it stands in the queue for slices.
   FairQueue<std::shared_ptr<JobRun>>::Place Turn() const {
     return {spec->job_class, spec->owner, state.field == nullptr};
@@ -54,6 +58,8 @@ struct JobRun {
   Restore restore;                      // Of a job of a process before; until then.
   Cancellation cancellation;
   Stage stage = Stage::kWaiting;
+  std::shared_ptr<JobRun> leader;                  // In stage kFollowing; else null.
+  std::vector<std::shared_ptr<JobRun>> followers;  // Whose leader this is, in the order in which they came.
   bool pause_wanted = false;             // Of a slice under way: by its end.
   JobState state;                        // Published last. In stage kSlicing nobody but the runner writes it.
   std::unique_ptr<Rendering> rendering;  // In stage kSlicing the runner's alone.

@@ -44,6 +44,7 @@ absl::StatusOr<JobRecord> Scheduler::Submit(std::shared_ptr<const JobSpec> spec,
     if (absl::Status allowed = CheckQuota(run->spec->owner); !allowed.ok()) return allowed;
     ++jobs_of_[run->spec->owner];
   }
+  const std::shared_ptr<const JobState> done = StateOfDone(*run->spec);
   // Writing may take a while: without the lock.
   auto job = store_.Insert({run->spec, std::make_shared<JobState>(run->state)}, submission, key);
   bool too_late = false;
@@ -54,14 +55,14 @@ absl::StatusOr<JobRecord> Scheduler::Submit(std::shared_ptr<const JobSpec> spec,
       return job;
     }
     too_late = stopping_;
-    if (!too_late) Enter(run);
+    if (!too_late) Enter(run, done.get());
   }
   if (too_late) {
     store_.Delete(run->spec->id).IgnoreError();
     return draining;
   }
   TellListener();
-  return job;
+  return done == nullptr ? job : store_.Get(job->spec->id);
 }
 
 void Scheduler::Resubmit(const JobRecord& job, JobRun::Restore restore) {
@@ -72,12 +73,12 @@ void Scheduler::Resubmit(const JobRecord& job, JobRun::Restore restore) {
   {
     const std::lock_guard lock(mutex_);
     ++jobs_of_[run->spec->owner];
-    Enter(run);
+    Enter(run, nullptr);
   }
   TellListener();
 }
 
-void Scheduler::Enter(const RunPtr& run) {
+void Scheduler::Enter(const RunPtr& run, const JobState* done) {
   untold_.push_back(run->spec->id);
   run->entered = run->stopwatch.Now();
   runs_[run->spec->id] = run;
@@ -86,8 +87,10 @@ void Scheduler::Enter(const RunPtr& run) {
     return;
   }
   accounts_.Enter(run->spec->owner);
-  waiting_.Push(run->Entry(), run);
-  Admit();
+  if (done == nullptr) return FollowOrWait(run);
+  run->started = run->entered;
+  Adopt(*done, *run);
+  End(*run, JobPhase::kSucceeded);
 }
 
 void Scheduler::FreeQuota(const std::string& owner) {
@@ -157,6 +160,14 @@ void Scheduler::Publish(JobRun& run) {
   if (run.state.start_time) run.state.elapsed_seconds = Seconds(run.stopwatch.Now() - run.started);
   // Watchers hear of a restored job when its probes are known.
   if (run.restore == nullptr || HasEnded(run.state.phase)) ++run.state.sequence;
+  Store(run);
+  for (const RunPtr& follower : run.followers) {
+    Adopt(run.state, *follower);
+    Store(*follower);
+  }
+}
+
+void Scheduler::Store(const JobRun& run) {
   // The job may have been deleted; then nobody wants to know.
   store_.Update({run.spec, std::make_shared<JobState>(run.state)}).IgnoreError();
   untold_.push_back(run.spec->id);
@@ -175,11 +186,15 @@ void Scheduler::End(JobRun& run, JobPhase phase) {
   if (run.has_place()) accounts_.GivePlace(run.spec->owner, run.spec->job_class);
   if (run.state.phase != JobPhase::kPaused) accounts_.Leave(run.spec->owner);
   run.stage = JobRun::Stage::kEnded;
+  shared_work_.Forget(run);
+  if (phase == JobPhase::kSucceeded) shared_work_.NoteDone(run);
   // A large scene takes a while to free: not under the lock.
   if (run.scene != nullptr) starters_->Post(0, [scene = std::move(run.scene)] {});
   run.state.phase = phase;
   run.state.queue.reset();
   run.state.end_time = std::chrono::system_clock::now();
+  std::vector<RunPtr> followers;
+  if (phase == JobPhase::kSucceeded) followers.swap(run.followers);
   Publish(run);
   if (options_.events != nullptr) {
     if (run.cancel_requested) options_.events->Cancelled(*run.spec, clock_.Now() - *run.cancel_requested);
@@ -187,6 +202,12 @@ void Scheduler::End(JobRun& run, JobPhase phase) {
   }
   runs_.erase(run.spec->id);
   FreeQuota(run.spec->owner);
+  for (const RunPtr& follower : followers) {
+    follower->leader.reset();
+    Adopt(run.state, *follower);
+    End(*follower, JobPhase::kSucceeded);
+  }
+  SendAway(run);
   Admit();
   run_stopped_.notify_all();
   if (stopping_ && runs_.empty()) ready_changed_.notify_all();
@@ -201,6 +222,7 @@ void Scheduler::RequestCancel(const RunPtr& run) {
   if (run->cancellation.cancelled()) return;
   run->cancellation.Cancel();
   run->cancel_requested = clock_.Now();
+  if (run->stage == JobRun::Stage::kFollowing) Unfollow(*run);
   if (run->stage == JobRun::Stage::kWaiting || run->stage == JobRun::Stage::kPreparing) {
     waiting_.Remove(run->Entry(), run);
     preparing_.Remove(run->Entry(), run);
@@ -238,6 +260,7 @@ void Scheduler::EnterPause(JobRun& run) {
   run.state.phase = JobPhase::kPaused;
   run.state.queue.reset();
   accounts_.Leave(run.spec->owner);
+  SendAway(run);
   Publish(run);
   run_stopped_.notify_all();
 }
@@ -247,7 +270,10 @@ absl::StatusOr<JobRecord> Scheduler::Pause(const JobId& id) {
     std::unique_lock lock(mutex_);
     const RunPtr run = Find(id);
     if (run != nullptr && run->state.phase != JobPhase::kPaused && !run->cancellation.cancelled()) {
+      if (run->stage == JobRun::Stage::kFollowing) Unfollow(*run);
       switch (run->stage) {
+        case JobRun::Stage::kFollowing:
+          break;
         case JobRun::Stage::kWaiting:
           waiting_.Remove(run->Entry(), run);
           EnterPause(*run);
@@ -290,8 +316,7 @@ absl::StatusOr<JobRecord> Scheduler::Resume(const JobId& id) {
       accounts_.Enter(run->spec->owner);
       Publish(*run);
       if (run->stage == JobRun::Stage::kWaiting) {
-        waiting_.Push(run->Entry(), run);
-        Admit();
+        FollowOrWait(run);
       } else if (run->stage == JobRun::Stage::kReady) {
         Requeue(run);
       }
@@ -358,6 +383,8 @@ std::vector<JobId> Scheduler::Unended(std::size_t most) {
 void Scheduler::Suspend(JobRun& run) {
   if (run.has_place()) accounts_.GivePlace(run.spec->owner, run.spec->job_class);
   if (run.state.phase != JobPhase::kPaused) accounts_.Leave(run.spec->owner);
+  if (run.stage == JobRun::Stage::kFollowing) Unfollow(run);
+  shared_work_.Forget(run);
   run.stage = JobRun::Stage::kEnded;
   run.pause_wanted = false;
   runs_.erase(run.spec->id);
@@ -373,11 +400,13 @@ void Scheduler::Stop() {
       stopping_ = true;
       std::vector<RunPtr> runs;
       for (const auto& [id, run] : runs_) runs.push_back(run);
-      // Those that wait first, lest each that ends lets one of them in.
-      std::partition(runs.begin(), runs.end(), [](const RunPtr& run) { return run->stage == JobRun::Stage::kWaiting; });
+      // Those that follow and those that wait first, lest each that ends lets one of them in.
+      std::ranges::sort(runs, {}, [](const RunPtr& run) { return run->stage; });
       for (const RunPtr& run : runs) {
         if (!store_.durable()) {
           RequestCancel(run);
+        } else if (run->stage == JobRun::Stage::kFollowing) {
+          Suspend(*run);
         } else if (run->stage == JobRun::Stage::kWaiting) {
           waiting_.Remove(run->Entry(), run);
           Suspend(*run);

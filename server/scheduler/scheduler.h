@@ -27,6 +27,7 @@
 #include "server/scheduler/job_checkpoint.h"
 #include "server/scheduler/job_run.h"
 #include "server/scheduler/scheduler_events.h"
+#include "server/scheduler/shared_work.h"
 #include "server/scheduler/task_queue.h"
 #include "server/store/job_store.h"
 
@@ -95,7 +96,18 @@ class Scheduler {
   absl::Status CheckQuota(const std::string& owner) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Gives free places to those who wait. To be called after each change of places or of what waits.
   void Admit() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void Enter(const RunPtr& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // `done`: what its work comes to, if that is known.
+  void Enter(const RunPtr& run, const JobState* done) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Of one that waits for nothing yet: to whom does the same work, or to those who wait for a place.
+  void FollowOrWait(const RunPtr& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // The other's values, as of now, as its own.
+  void Adopt(const JobState& other, JobRun& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // In stage kFollowing: into the stage kWaiting, with the values that it has, but waiting for nothing yet.
+  void Unfollow(JobRun& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Those who follow a run that rests or has ended in vain: each as if it came now.
+  void SendAway(JobRun& leader) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // What another job found that did the same work to its end; null if there is none, or it is no longer at hand.
+  std::shared_ptr<const JobState> StateOfDone(const JobSpec& spec) ABSL_LOCKS_EXCLUDED(mutex_);
   void FreeQuota(const std::string& owner) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void TellPlaces() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void PrepareNext();
@@ -114,6 +126,7 @@ class Scheduler {
   void Requeue(const RunPtr& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Stores the run's state under the next sequence number, for TellListener.
   void Publish(JobRun& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Store(const JobRun& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Of all that was published and not yet told.
   void TellListener() ABSL_LOCKS_EXCLUDED(mutex_);
   void End(JobRun& run, JobPhase phase) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -136,6 +149,7 @@ class Scheduler {
   std::unordered_map<JobId, RunPtr> runs_ ABSL_GUARDED_BY(mutex_);                // Those that have not ended.
   std::unordered_map<std::string, std::size_t> jobs_of_ ABSL_GUARDED_BY(mutex_);  // How many of `runs_`, by owner.
   Accounts accounts_ ABSL_GUARDED_BY(mutex_);
+  SharedWork shared_work_ ABSL_GUARDED_BY(mutex_){10'000};
   FairQueue<RunPtr> waiting_ ABSL_GUARDED_BY(mutex_);    // For one of max_running_jobs places.
   FairQueue<RunPtr> preparing_ ABSL_GUARDED_BY(mutex_);  // For a starter. Those that have ended are passed over.
   FairQueue<RunPtr> ready_ ABSL_GUARDED_BY(mutex_);      // For a slice.

@@ -228,6 +228,7 @@ void Scheduler::RunSlice(JobRun& run) {
     publish = done || run.cancellation.cancelled() || (first && has_picture) || now - run.published >= interval;
     if (publish && has_picture) {
       next.field = rendering.Snapshot();
+      next.shared_work = false;
       run.failure = CheckFinite(*run.spec->scene, *next.field);
       next.versions = StampVersions(*run.spec->scene, run.state.field.get(), run.state.versions, *next.field,
                                     run.state.sequence + 1);

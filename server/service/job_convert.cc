@@ -106,6 +106,7 @@ v1::Job JobToProto(const JobSpec& spec, const JobState& state, JobView view) {
       SetTime(*state.queue->expected_start, *job.mutable_queue()->mutable_expected_start());
   }
   job.set_state(PhaseToProto(state.phase));
+  job.set_shared_work(state.shared_work);
   FillProgress(state, *job.mutable_progress());
   SetTime(spec.create_time, *job.mutable_create_time());
   if (state.start_time) SetTime(*state.start_time, *job.mutable_start_time());

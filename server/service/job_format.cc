@@ -76,6 +76,7 @@ absl::StatusOr<JobRecord> ProtoJobFormat::Read(const ArchivedJob& archived, cons
   spec->create_time = TimeOf(job.create_time());
   state->sequence = archived.sequence;
   state->phase = PhaseOf(job.state());
+  state->shared_work = job.shared_work();
   state->progress = ProgressOf(job.progress());
   state->elapsed_seconds = job.progress().elapsed_seconds();
   state->cpu_seconds = result.statistics().cpu_seconds();

@@ -31,6 +31,8 @@ struct JobSpec {
   Settings settings;                          // As requested.
   Plan plan;
   std::string job_key;  // Names what decides the bits of the result. Not known of a job that waits to be restored.
+  // Jobs of equal ones do the same work, and may tell of each other by sharing it. Empty: this one does its own.
+  std::string work_key;
   std::optional<std::string> records_checksum;  // Of those that the request brought.
   WallTime create_time;
 };
@@ -86,6 +88,7 @@ struct JobState {
   absl::Status error;                   // Of a job that failed.
   std::shared_ptr<const Field> field;   // Null before the first picture.
   FieldVersions versions;               // Of `field`.
+  bool shared_work = false;             // `field` is what another job found that does, or did, the same work.
 };
 
 struct JobRecord {

@@ -2,11 +2,11 @@
 #include "tests/bench/bench_daemon.h"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -39,16 +39,22 @@ TemporaryFolder::~TemporaryFolder() {
 BenchDaemon::BenchDaemon(const std::string& program, const std::string& folder,
                          const std::vector<std::string>& arguments)
     : address_("unix:" + folder + "/socket") {
-  std::vector<std::string> words = {program, "--listen", address_, "--threads", "2"};
+  std::vector<std::string> words = {program, "--listen", address_, "--threads", "2", "--exit-with-parent"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
+  // It ends with its standard input: also when this program dies.
+  int input[2];
+  if (pipe2(input, O_CLOEXEC) != 0) Die("cannot make a pipe");
+  posix_spawn_file_actions_adddup2(&actions, input[0], STDIN_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   if (posix_spawn(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ) != 0) Die("cannot run " + program);
   posix_spawn_file_actions_destroy(&actions);
+  close(input[0]);
+  input_ = input[1];
   const auto channel = Connect();
   render_ = v1::RenderService::NewStub(channel);
   server_ = v1::ServerService::NewStub(channel);
@@ -58,6 +64,7 @@ void BenchDaemon::Kill() {
   if (pid_ <= 0) return;
   kill(pid_, SIGKILL);
   waitpid(pid_, nullptr, 0);
+  close(input_);
   pid_ = 0;
 }
 

@@ -55,6 +55,7 @@ class BenchDaemon {
  private:
   std::string address_;
   pid_t pid_ = 0;
+  int input_ = -1;  // The daemon ends when this one is closed.
   std::unique_ptr<v1::RenderService::Stub> render_;
   std::unique_ptr<v1::ServerService::Stub> server_;
 };

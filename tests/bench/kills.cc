@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "google/protobuf/util/message_differencer.h"
 #include "tests/bench/bench_daemon.h"
 
 namespace flatlight {
@@ -60,6 +61,17 @@ std::string FetchResult(v1::RenderService::Stub& render, const std::string& job)
   return result.SerializeAsString();
 }
 
+std::string Differences(const std::string& expected, const std::string& result) {
+  v1::RenderResult a, b;
+  a.ParseFromString(expected);
+  b.ParseFromString(result);
+  std::string report;
+  google::protobuf::util::MessageDifferencer differencer;
+  differencer.ReportDifferencesToString(&report);
+  differencer.Compare(a, b);
+  return report.substr(0, 1000);
+}
+
 // Watches to the end; the state in which it ended.
 v1::Job::State AwaitEnd(v1::RenderService::Stub& render, const std::string& job) {
   CallContext context;
@@ -88,6 +100,7 @@ std::set<std::string> ListAll(v1::RenderService::Stub& render) {
 
 struct Submitted {
   std::size_t request = 0;  // Which.
+  bool anew = true;
   std::string request_id;
   std::string job;  // Empty until the server has said so.
 };
@@ -97,11 +110,12 @@ void Submit(v1::RenderService::Stub& render, const std::vector<v1::CreateJobRequ
             std::vector<Submitted>& submitted) {
   while (true) {
     if (submitted.empty() || !submitted.back().job.empty()) {
-      submitted.push_back({random() % requests.size(), std::to_string(random()), ""});
+      submitted.push_back({random() % requests.size(), random() % 8 == 0, std::to_string(random()), ""});
     }
     Submitted& last = submitted.back();
     v1::CreateJobRequest request = requests[last.request];
     request.set_request_id(last.request_id);
+    request.set_anew(last.anew);
     CallContext context(std::chrono::seconds(2));
     v1::Job job;
     if (!render.CreateJob(&context, request, &job).ok()) return;
@@ -151,8 +165,9 @@ int Run(const std::string& program, int kills, std::uint64_t seed) {
     if (listed.count(one.job) == 0 || AwaitEnd(daemon.render(), one.job) != v1::Job::SUCCEEDED) {
       std::printf("lost: %s, %s\n", one.job.c_str(), requests[one.request].ShortDebugString().c_str());
       ++lost;
-    } else if (FetchResult(daemon.render(), one.job) != expected[one.request]) {
-      std::printf("altered: %s, %s\n", one.job.c_str(), requests[one.request].ShortDebugString().c_str());
+    } else if (const std::string result = FetchResult(daemon.render(), one.job); result != expected[one.request]) {
+      std::printf("altered: %s, %s\n%s", one.job.c_str(), requests[one.request].ShortDebugString().c_str(),
+                  Differences(expected[one.request], result).c_str());
       ++altered;
     }
   }

@@ -40,13 +40,13 @@ double MillisecondsSince(Clock::time_point start) {
 
 v1::CreateJobRequest SmallJob() {
   return RequestFromJson(
-      R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PATH_TRACING", "samples": 64}})");
+      R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PATH_TRACING", "samples": 64}, "anew": true})");
 }
 
 // Takes hours.
 v1::CreateJobRequest LongJob(v1::JobClass job_class) {
   v1::CreateJobRequest request = RequestFromJson(
-      R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PATH_TRACING", "samples": 100000000}})");
+      R"({"scene": {"name": "scenes/cornell"}, "settings": {"method": "PATH_TRACING", "samples": 100000000}, "anew": true})");
   request.set_job_class(job_class);
   return request;
 }

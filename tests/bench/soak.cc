@@ -81,6 +81,7 @@ class User {
   bool Submit() {
     CallContext context;
     v1::CreateJobRequest request = requests_[random_() % requests_.size()];
+    request.set_anew(random_() % 2 == 0);
     if (request.settings().has_seed()) request.mutable_settings()->set_seed(static_cast<std::uint32_t>(random_()));
     v1::Job job;
     if (!render_->CreateJob(&context, request, &job).ok()) {

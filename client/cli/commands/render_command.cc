@@ -29,7 +29,7 @@ CommandResult Render(const CommandLine& line, Interruption& interruption) {
   Connection& connection = (*session)->connection();
   const auto source = ProvideScene(connection, *scene, line.probes);
   if (!source.ok()) return (*session)->Explain(source.status());
-  const auto job = CreateJob(connection, *source, line.settings, v1::INTERACTIVE, *records);
+  const auto job = CreateJob(connection, *source, line.settings, {.records = *records, .anew = line.anew});
   if (!job.ok())
     return ExplainSceneError(connection, *scene, *source,
                              ExplainRecordsError(line.known_records, (*session)->Explain(job.status())));

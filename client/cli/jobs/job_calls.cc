@@ -27,12 +27,13 @@ absl::StatusOr<v1::Job> ControlJob(Connection& connection, Method method, const 
 }  // namespace
 
 absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource& scene, const v1::Settings& settings,
-                                  v1::JobClass job_class, const std::optional<v1::KnownRecords>& records) {
+                                  const CreateJobOptions& options) {
   v1::CreateJobRequest request;
   *request.mutable_scene() = scene;
   *request.mutable_settings() = settings;
-  request.set_job_class(job_class);
-  if (records) *request.mutable_records() = *records;
+  request.set_job_class(options.job_class);
+  if (options.records) *request.mutable_records() = *options.records;
+  request.set_anew(options.anew);
   request.set_request_id(NewUuid());
   v1::Job job;
   absl::Status status;

@@ -11,10 +11,15 @@
 
 namespace flatlight {
 
+struct CreateJobOptions {
+  v1::JobClass job_class = v1::INTERACTIVE;
+  std::optional<v1::KnownRecords> records = std::nullopt;
+  bool anew = false;  // Does its own work, also if that of an equal job could be shared.
+};
+
 // Repeats itself if the server was lost on the way; a request id makes sure that there is one job.
 absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource& scene, const v1::Settings& settings,
-                                  v1::JobClass job_class = v1::INTERACTIVE,
-                                  const std::optional<v1::KnownRecords>& records = std::nullopt);
+                                  const CreateJobOptions& options = {});
 
 absl::StatusOr<v1::Job> GetJob(Connection& connection, const std::string& name);
 

@@ -169,6 +169,7 @@ void AddSceneCommands(CLI::App& app, Raw& raw) {
           .add_option("--records", raw.line.known_records,
                       "begin with the records of a result (JSON) or of an ended job of the server (jobs/UUID)")
           ->type_name("FILE");
+      command.add_flag("--anew", raw.line.anew, "do the work, also if an equal job of the server has done it");
     }
     if (render) AddCancelOnDisconnect(command, raw);
     if (render) AddOutputs(command, raw);

@@ -123,6 +123,38 @@ TEST_F(ControlTest, AJobEndsWithTheWatchThatAsksForThat) {
   }
 }
 
+TEST_F(ControlTest, EqualWorkIsSharedUnlessItIsToBeDoneAnew) {
+  LoopbackServer server(Options());
+  const auto shares = [&](const v1::CreateJobRequest& request) {
+    v1::Job job;
+    TestContext creating;
+    EXPECT_TRUE(server.render().CreateJob(&creating, request, &job).ok());
+    v1::WatchJobRequest watch;
+    watch.set_name(job.name());
+    TestContext watching;
+    const auto reader = server.render().WatchJob(&watching, watch);
+    for (v1::WatchJobResponse message; reader->Read(&message);) {
+      if (message.has_job()) job = message.job();
+    }
+    EXPECT_TRUE(reader->Finish().ok());
+    EXPECT_EQ(job.state(), v1::Job::SUCCEEDED);
+    return job.shared_work();
+  };
+  v1::CreateJobRequest request = NewJob(v1::INTERACTIVE);
+  EXPECT_FALSE(shares(request));
+  EXPECT_TRUE(shares(request));
+  request.set_job_class(v1::REGRADE);
+  EXPECT_TRUE(shares(request));
+  request.set_anew(true);
+  EXPECT_FALSE(shares(request));
+  request.set_anew(false);
+  request.mutable_settings()->set_seed(1);
+  EXPECT_FALSE(shares(request));
+  request.mutable_settings()->set_time_limit(60);
+  EXPECT_FALSE(shares(request));
+  EXPECT_FALSE(shares(request));
+}
+
 TEST_F(ControlTest, AnUnknownClassIsRefused) {
   LoopbackServer server(Options());
   v1::Job job;

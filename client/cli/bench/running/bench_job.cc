@@ -9,7 +9,7 @@ namespace flatlight {
 
 absl::StatusOr<v1::RenderResult> RunBenchJob(Connection& connection, const v1::SceneSource& source,
                                              const v1::Settings& settings, const BenchJobHooks& hooks) {
-  const auto job = CreateJob(connection, source, settings);
+  const auto job = CreateJob(connection, source, settings, {.anew = true});
   if (!job.ok()) return job.status();
   WatchOptions options;
   options.max_rate = 1;  // What is sent while a job runs disturbs it.
