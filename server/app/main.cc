@@ -46,6 +46,13 @@ int Run(const DaemonOptions& options) {
                                                           : RestoreBackup(options.restore_from, options.data);
     return done.ok() ? 0 : Fail(done, kCannotServe);
   }
+  if (options.user.action != UserCommand::Action::kNone) {
+    const auto text = RunUserCommand(options.user, options.data);
+    if (!text.ok()) return Fail(text.status(), absl::IsInvalidArgument(text.status()) ? kBadUsage : kCannotServe);
+    if (std::fputs(text->c_str(), stdout) >= 0 && std::fflush(stdout) == 0) return 0;
+    std::perror("flatlightd: cannot write to standard output");
+    return kCannotServe;
+  }
   ServerOptions server_options;
   server_options.address = options.listen;
   server_options.threads = options.threads;

@@ -34,7 +34,30 @@ std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int p
   backup->add_option("BACKUP", options.back_up_to, "a new folder")->required();
   CLI::App* restore = app.add_subcommand("restore", "make a new folder from a backup: --data DIR BACKUP");
   restore->add_option("BACKUP", options.restore_from, "what backup made")->required();
-  for (CLI::App* command : {backup, restore}) {
+  CLI::App* user = app.add_subcommand(
+      "user", "who may use a server, which may be running: with its first user it asks everybody for a token");
+  user->require_subcommand(1);
+  CLI::App* add = user->add_subcommand("add", "add a user, or those of a roster, and print their tokens, this once");
+  CLI::Option* name = add->add_option("NAME", options.user.name, "1 to 64 of a-z, 0-9 and . _ - @");
+  CLI::Option* role = add->add_option("--role", options.user.role, "what the user may do")
+                          ->default_str("student")
+                          ->check(CLI::IsMember({"student", "grader", "instructor", "admin"}));
+  CLI::Option* group = add->add_option("--group", options.user.groups, "a group that the user is in; may repeat")
+                           ->allow_extra_args(false);
+  CLI::Option* roster = add->add_option("--roster", options.user.roster,
+                                        "a CSV file of users: the columns name and, if wanted, role and groups (a;b)");
+  for (CLI::Option* of_one : {name, role, group}) roster->excludes(of_one);
+  add->callback([&options, name, roster] {
+    options.user.action = UserCommand::Action::kAdd;
+    if (name->empty() && roster->empty()) throw CLI::RequiredError("NAME or --roster");
+  });
+  CLI::App* list = user->add_subcommand("list", "print the users as CSV, without their tokens");
+  list->callback([&options] { options.user.action = UserCommand::Action::kList; });
+  CLI::App* revoke = user->add_subcommand("revoke", "make a user's token worth nothing, at once");
+  revoke->add_option("NAME", options.user.name, "of the user")->required();
+  revoke->callback([&options] { options.user.action = UserCommand::Action::kRevoke; });
+  for (CLI::App* command : {add, list, revoke}) command->fallthrough();
+  for (CLI::App* command : {backup, restore, user}) {
     command->fallthrough();
     command->final_callback([&options] {
       if (options.data.empty()) throw CLI::RequiredError("--data");

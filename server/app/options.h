@@ -6,6 +6,8 @@
 #include <string>
 #include <variant>
 
+#include "server/app/user_commands.h"
+
 namespace flatlight {
 
 // The command line of flatlightd.
@@ -17,6 +19,7 @@ struct DaemonOptions {
   double checkpoint_interval = 3;  // s.
   std::string back_up_to;          // A new folder: copy `data` there, and serve nothing.
   std::string restore_from;        // A backup: make `data` from it, and serve nothing.
+  UserCommand user;                // Unless its action is none: do that on `data`, and serve nothing.
   std::string metrics;             // HOST:PORT for Prometheus; empty: none.
   std::string log;                 // A file of calls, or "-"; empty: none.
   bool exit_with_parent = false;   // End when standard input does.

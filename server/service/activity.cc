@@ -4,6 +4,7 @@
 #include <string>
 
 #include "server/service/job_convert.h"
+#include "server/service/policy.h"
 #include "server/service/status_convert.h"
 #include "server/telemetry/process_readings.h"
 
@@ -12,6 +13,16 @@ namespace {
 
 constexpr std::uint32_t kDefaultJobs = 100;
 constexpr std::uint32_t kMostJobs = 1000;
+constexpr char kOthers[] = "(others)";  // No user's name.
+
+void AddUser(const std::string& name, const SchedulerLoad::User& user, v1::GetActivityResponse& response) {
+  v1::UserActivity& activity = *response.add_users();
+  activity.set_user(name);
+  activity.set_running(static_cast<std::uint32_t>(user.running));
+  activity.set_waiting(static_cast<std::uint32_t>(user.waiting));
+  activity.set_paused(static_cast<std::uint32_t>(user.paused));
+  activity.set_cpu_seconds(user.cpu_seconds);
+}
 
 void AddJob(const JobRecord& record, v1::GetActivityResponse& response) {
   v1::JobActivity& activity = *response.add_jobs();
@@ -25,7 +36,8 @@ void AddJob(const JobRecord& record, v1::GetActivityResponse& response) {
 
 }  // namespace
 
-absl::StatusOr<v1::GetActivityResponse> GetActivity(Backend& backend, const v1::GetActivityRequest& request) {
+absl::StatusOr<v1::GetActivityResponse> GetActivity(Backend& backend, const Caller& caller,
+                                                    const v1::GetActivityRequest& request) {
   if (request.max_jobs() > kMostJobs) {
     return MakeFieldError("max_jobs", std::to_string(request.max_jobs()) + "; allowed: at most 1000");
   }
@@ -39,18 +51,25 @@ absl::StatusOr<v1::GetActivityResponse> GetActivity(Backend& backend, const v1::
   response.set_rays(telemetry.metrics().rays());
   response.set_resident_bytes(process.resident_bytes);
   response.set_watches(now.watches);
+  SchedulerLoad::User others;
+  bool has_others = false;
   for (const auto& [name, user] : now.load.users) {
-    v1::UserActivity& activity = *response.add_users();
-    activity.set_user(name);
-    activity.set_running(static_cast<std::uint32_t>(user.running));
-    activity.set_waiting(static_cast<std::uint32_t>(user.waiting));
-    activity.set_paused(static_cast<std::uint32_t>(user.paused));
-    activity.set_cpu_seconds(user.cpu_seconds);
+    if (caller.role >= Role::kGrader || name == caller.name) {
+      AddUser(name, user, response);
+      continue;
+    }
+    has_others = true;
+    others.running += user.running;
+    others.waiting += user.waiting;
+    others.paused += user.paused;
+    others.cpu_seconds += user.cpu_seconds;
   }
+  if (has_others) AddUser(kOthers, others, response);
   const std::uint32_t most = request.max_jobs() == 0 ? kDefaultJobs : request.max_jobs();
   for (const JobId& id : backend.scheduler.Unended(most)) {
     // It may have ended meanwhile.
-    if (const auto job = backend.jobs.Get(id); job.ok() && !HasEnded(job->state->phase)) AddJob(*job, response);
+    if (const auto job = FindSeen(caller, id, backend.jobs); job.ok() && !HasEnded(job->state->phase))
+      AddJob(*job, response);
   }
   return response;
 }

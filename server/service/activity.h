@@ -9,7 +9,8 @@
 namespace flatlight {
 
 // ServerService.GetActivity.
-absl::StatusOr<v1::GetActivityResponse> GetActivity(Backend& backend, const v1::GetActivityRequest& request);
+absl::StatusOr<v1::GetActivityResponse> GetActivity(Backend& backend, const Caller& caller,
+                                                    const v1::GetActivityRequest& request);
 
 }  // namespace flatlight
 

@@ -68,7 +68,7 @@ template <class Request, class LaneOf, class Work>
 grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* context, const grpc::ByteBuffer* bytes,
                                  grpc::ByteBuffer* answer, LaneOf lane, Work work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  absl::StatusOr<Caller> caller = backend.guard.Authorize(*context);
+  absl::StatusOr<Caller> caller = backend.guard.Authorize(*context, Request::descriptor()->name());
   if (!caller.ok()) {
     reactor->Finish(ToGrpcStatus(caller.status()));
     return reactor;

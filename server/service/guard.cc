@@ -3,7 +3,7 @@
 
 #include <openssl/crypto.h>
 
-#include <string_view>
+#include <utility>
 
 #include "server/store/error.h"
 #include "server/store/sha256.h"
@@ -17,20 +17,46 @@ absl::Status Refuse(const std::string& message) {
 
 }  // namespace
 
-Guard::Guard(const std::string& token) : token_hash_(token.empty() ? "" : Sha256Of(token)) {}
+Guard::Guard(const std::string& token, std::unique_ptr<Database> users)
+    : token_hash_(token.empty() ? "" : Sha256Of(token)), users_(std::move(users)) {}
 
-absl::StatusOr<Caller> Guard::Authorize(const grpc::ServerContextBase& context) const {
-  if (token_hash_.empty()) return Caller{"anonymous"};
+absl::StatusOr<Caller> Guard::Authorize(const grpc::ServerContextBase& context, std::string_view request) const {
+  auto caller = Authenticate(context);
+  if (!caller.ok()) return caller;
+  if (absl::Status allowed = CheckRole(*caller, request); !allowed.ok()) return allowed;
+  return caller;
+}
+
+absl::StatusOr<bool> Guard::HasUsers() const {
+  if (has_users_) return true;
+  const std::lock_guard lock(mutex_);
+  if (users_ == nullptr) return false;
+  auto some = UserStore(*users_).HasUsers();
+  if (some.ok() && *some) has_users_ = true;
+  return some;
+}
+
+absl::StatusOr<Caller> Guard::Authenticate(const grpc::ServerContextBase& context) const {
+  const auto has_users = HasUsers();
+  if (!has_users.ok()) return has_users.status();
+  if (token_hash_.empty() && !*has_users) return Caller{"anonymous", Role::kAdmin};
   const auto& metadata = context.client_metadata();
   const auto entry = metadata.find("authorization");
   if (entry == metadata.end()) return Refuse("this server wants the metadata authorization: Bearer TOKEN");
   constexpr std::string_view kScheme = "Bearer ";
   const std::string_view value(entry->second.data(), entry->second.size());
   if (!value.starts_with(kScheme)) return Refuse("the metadata authorization must be: Bearer TOKEN");
+  const std::string_view token = value.substr(kScheme.size());
   // Hashes of equal length, compared in constant time: how long it takes tells nothing about the token.
-  const std::string hash = Sha256Of(value.substr(kScheme.size()));
-  if (CRYPTO_memcmp(hash.data(), token_hash_.data(), hash.size()) != 0) return Refuse("the token is not this server's");
-  return Caller{"owner"};
+  const std::string hash = Sha256Of(token);
+  if (!token_hash_.empty() && CRYPTO_memcmp(hash.data(), token_hash_.data(), hash.size()) == 0) {
+    return Caller{"owner", Role::kAdmin};
+  }
+  if (!*has_users) return Refuse("the token is not this server's");
+  const std::lock_guard lock(mutex_);
+  auto user = UserStore(*users_).Authenticate(token);
+  if (!user.ok()) return user.status();
+  return Caller{std::move(user->name), user->role};
 }
 
 }  // namespace flatlight

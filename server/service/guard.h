@@ -2,28 +2,45 @@
 #ifndef FLATLIGHT_SERVER_SERVICE_GUARD_H_
 #define FLATLIGHT_SERVER_SERVICE_GUARD_H_
 
+#include <atomic>
+#include <memory>
+#include <mutex>
 #include <string>
+#include <string_view>
 
+#include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
 #include "grpcpp/server_context.h"
+#include "server/service/policy.h"
+#include "server/store/database.h"
 
 namespace flatlight {
 
-struct Caller {
-  std::string name;
-};
-
 // Passed by every call of every flatlight service before anything else: who calls, and may they? (Health and reflection
 // are open.)
+//
+// - "owner", an admin, is who sends the server's own token.
+// - Whoever sends the token of a user is that user, from the moment it is added until it is revoked.
+// - "anonymous", an admin, is everybody on this machine, while the server has no token of its own and has never had a
+//   user. Both names are kept from users.
 class Guard {
  public:
-  // With a token, only callers that send "authorization: Bearer TOKEN" pass. Empty: everybody does.
-  explicit Guard(const std::string& token);
+  // Callers send "authorization: Bearer TOKEN". `token`: the server's own; empty: none. `users`: a connection for the
+  // guard alone; null: no users.
+  Guard(const std::string& token, std::unique_ptr<Database> users);
 
-  absl::StatusOr<Caller> Authorize(const grpc::ServerContextBase& context) const;
+  // UNAUTHENTICATED with BAD_TOKEN or TOKEN_INVALID, PERMISSION_DENIED with ROLE_TOO_LOW. `request`: see PolicyRow.
+  absl::StatusOr<Caller> Authorize(const grpc::ServerContextBase& context, std::string_view request) const;
 
  private:
-  std::string token_hash_;  // Empty: no token is asked for.
+  absl::StatusOr<Caller> Authenticate(const grpc::ServerContextBase& context) const;
+  // Sticky: it is asked on every call until it is true.
+  absl::StatusOr<bool> HasUsers() const;
+
+  const std::string token_hash_;  // Empty: no token.
+  mutable std::atomic<bool> has_users_ = false;
+  mutable std::mutex mutex_;
+  const std::unique_ptr<Database> users_ ABSL_PT_GUARDED_BY(mutex_);
 };
 
 }  // namespace flatlight

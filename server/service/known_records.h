@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "core/render/plan.h"
 #include "flatlight/v1/render_service.pb.h"
+#include "server/service/policy.h"
 #include "server/store/job_store.h"
 
 namespace flatlight {
@@ -18,8 +19,8 @@ struct TakenRecords {
   std::string checksum;
 };
 
-// The records of the job that a request names, with their seal.
-absl::StatusOr<v1::KnownRecords> RecordsOfJob(const v1::KnownRecords& known, JobStore& jobs);
+// The records of the job that a request names, with their seal; a job that the caller may not see is not known.
+absl::StatusOr<v1::KnownRecords> RecordsOfJob(const Caller& caller, const v1::KnownRecords& known, JobStore& jobs);
 
 // The records that a request brings for a plan. An error if they are damaged, or are of another world or gather than
 // the plan's.

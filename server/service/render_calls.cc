@@ -14,6 +14,7 @@
 #include "server/service/job_convert.h"
 #include "server/service/known_records.h"
 #include "server/service/page.h"
+#include "server/service/policy.h"
 #include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
 #include "server/store/error.h"
@@ -105,8 +106,9 @@ absl::StatusOr<JobRun::Restored> MakeJob(Backend& backend, const v1::CreateJobRe
 }
 
 // With the records of the job that it names: that job may be deleted before this one is restored.
-absl::StatusOr<v1::CreateJobRequest> WithRecords(const v1::CreateJobRequest& request, JobStore& jobs) {
-  auto records = RecordsOfJob(request.records(), jobs);
+absl::StatusOr<v1::CreateJobRequest> WithRecords(const Caller& caller, const v1::CreateJobRequest& request,
+                                                 JobStore& jobs) {
+  auto records = RecordsOfJob(caller, request.records(), jobs);
   if (!records.ok()) return records.status();
   v1::CreateJobRequest whole = request;
   *whole.mutable_records() = *std::move(records);
@@ -129,9 +131,11 @@ absl::StatusOr<Submission> MakeSubmission(Backend& backend, const v1::CreateJobR
 v1::Job WholeJob(const JobRecord& job) { return JobToProto(*job.spec, *job.state, JobView::kWhole); }
 
 template <class Action>
-absl::StatusOr<v1::Job> ControlJob(const std::string& name, const Action& action) {
+absl::StatusOr<v1::Job> ControlJob(Backend& backend, const Caller& caller, const std::string& name,
+                                   const Action& action) {
   const auto id = ParseJobName(name);
   if (!id.ok()) return id.status();
+  if (absl::Status allowed = CheckControl(caller, *id, backend.jobs); !allowed.ok()) return allowed;
   const absl::StatusOr<JobRecord> job = action(*id);
   if (!job.ok()) return job.status();
   return WholeJob(*job);
@@ -159,7 +163,7 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
   absl::StatusOr<v1::CreateJobRequest> with_records;
   const v1::CreateJobRequest* whole = &request;
   if (!request.records().job().empty()) {
-    with_records = WithRecords(request, backend.jobs);
+    with_records = WithRecords(caller, request, backend.jobs);
     if (!with_records.ok()) return with_records.status();
     whole = &*with_records;
   }
@@ -207,15 +211,16 @@ absl::StatusOr<JobRun::Restored> RestoreJob(Backend& backend, JobArchive& archiv
   return made;
 }
 
-absl::StatusOr<v1::Job> GetJob(Backend& backend, const v1::GetJobRequest& request) {
+absl::StatusOr<v1::Job> GetJob(Backend& backend, const Caller& caller, const v1::GetJobRequest& request) {
   const auto id = ParseJobName(request.name());
   if (!id.ok()) return id.status();
-  const auto job = backend.jobs.Get(*id);
+  const auto job = FindSeen(caller, *id, backend.jobs);
   if (!job.ok()) return job.status();
   return WholeJob(*job);
 }
 
-absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJobsRequest& request) {
+absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const Caller& caller,
+                                              const v1::ListJobsRequest& request) {
   const auto page = ParsePage(request.page_size(), request.page_token());
   if (!page.ok()) return page.status();
   const auto listed = backend.jobs.List(page->position, page->size);
@@ -224,6 +229,7 @@ absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJo
   v1::ListJobsResponse response;
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < jobs.jobs.size(); ++i) {
+    if (!MaySee(caller, *jobs.jobs[i].spec)) continue;
     v1::Job job = WholeJob(jobs.jobs[i]);
     bytes += job.ByteSizeLong();
     if (i > 0 && bytes > kMaxPageBytes) {
@@ -236,21 +242,23 @@ absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJo
   return response;
 }
 
-absl::StatusOr<v1::Job> CancelJob(Backend& backend, const v1::CancelJobRequest& request) {
-  return ControlJob(request.name(), [&](const JobId& id) { return backend.scheduler.Cancel(id); });
+absl::StatusOr<v1::Job> CancelJob(Backend& backend, const Caller& caller, const v1::CancelJobRequest& request) {
+  return ControlJob(backend, caller, request.name(), [&](const JobId& id) { return backend.scheduler.Cancel(id); });
 }
 
-absl::StatusOr<v1::Job> PauseJob(Backend& backend, const v1::PauseJobRequest& request) {
-  return ControlJob(request.name(), [&](const JobId& id) { return backend.scheduler.Pause(id); });
+absl::StatusOr<v1::Job> PauseJob(Backend& backend, const Caller& caller, const v1::PauseJobRequest& request) {
+  return ControlJob(backend, caller, request.name(), [&](const JobId& id) { return backend.scheduler.Pause(id); });
 }
 
-absl::StatusOr<v1::Job> ResumeJob(Backend& backend, const v1::ResumeJobRequest& request) {
-  return ControlJob(request.name(), [&](const JobId& id) { return backend.scheduler.Resume(id); });
+absl::StatusOr<v1::Job> ResumeJob(Backend& backend, const Caller& caller, const v1::ResumeJobRequest& request) {
+  return ControlJob(backend, caller, request.name(), [&](const JobId& id) { return backend.scheduler.Resume(id); });
 }
 
-absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const v1::DeleteJobRequest& request) {
+absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const Caller& caller,
+                                                const v1::DeleteJobRequest& request) {
   const auto id = ParseJobName(request.name());
   if (!id.ok()) return id.status();
+  if (absl::Status allowed = CheckControl(caller, *id, backend.jobs); !allowed.ok()) return allowed;
   if (absl::Status deleted = backend.scheduler.Delete(*id); !deleted.ok()) return deleted;
   return v1::DeleteJobResponse();
 }

@@ -15,12 +15,14 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
                                   const Proceed& proceed);
 // A job of a process before, made again from what was submitted, with its last checkpoint.
 absl::StatusOr<JobRun::Restored> RestoreJob(Backend& backend, JobArchive& archive, const JobSpec& accepted);
-absl::StatusOr<v1::Job> GetJob(Backend& backend, const v1::GetJobRequest& request);
-absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const v1::ListJobsRequest& request);
-absl::StatusOr<v1::Job> CancelJob(Backend& backend, const v1::CancelJobRequest& request);
-absl::StatusOr<v1::Job> PauseJob(Backend& backend, const v1::PauseJobRequest& request);
-absl::StatusOr<v1::Job> ResumeJob(Backend& backend, const v1::ResumeJobRequest& request);
-absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const v1::DeleteJobRequest& request);
+absl::StatusOr<v1::Job> GetJob(Backend& backend, const Caller& caller, const v1::GetJobRequest& request);
+absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const Caller& caller,
+                                              const v1::ListJobsRequest& request);
+absl::StatusOr<v1::Job> CancelJob(Backend& backend, const Caller& caller, const v1::CancelJobRequest& request);
+absl::StatusOr<v1::Job> PauseJob(Backend& backend, const Caller& caller, const v1::PauseJobRequest& request);
+absl::StatusOr<v1::Job> ResumeJob(Backend& backend, const Caller& caller, const v1::ResumeJobRequest& request);
+absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const Caller& caller,
+                                                const v1::DeleteJobRequest& request);
 absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const v1::ExplainJobRequest& request,
                                                   const Proceed& proceed);
 

@@ -6,6 +6,7 @@
 
 #include "server/service/call.h"
 #include "server/service/job_convert.h"
+#include "server/service/policy.h"
 #include "server/service/render_calls.h"
 #include "server/service/result_stream.h"
 #include "server/service/scene_lane.h"
@@ -41,37 +42,40 @@ grpc::ServerUnaryReactor* RenderService::GetJob(Context* context, const Bytes* r
   const auto lane = [this](const v1::GetJobRequest&) { return backend_.jobs.durable() ? Lane::kQuick : Lane::kInline; };
   return Answer<v1::GetJobRequest>(
       backend_, context, request, response, lane,
-      [this](const Caller&, const v1::GetJobRequest& r) { return flatlight::GetJob(backend_, r); });
+      [this](const Caller& caller, const v1::GetJobRequest& r) { return flatlight::GetJob(backend_, caller, r); });
 }
 
 grpc::ServerUnaryReactor* RenderService::ListJobs(Context* context, const Bytes* request, Bytes* response) {
   return Answer<v1::ListJobsRequest>(
       backend_, context, request, response, kQuickLane,
-      [this](const Caller&, const v1::ListJobsRequest& r) { return flatlight::ListJobs(backend_, r); });
+      [this](const Caller& caller, const v1::ListJobsRequest& r) { return flatlight::ListJobs(backend_, caller, r); });
 }
 
 grpc::ServerUnaryReactor* RenderService::CancelJob(Context* context, const Bytes* request, Bytes* response) {
-  return Answer<v1::CancelJobRequest>(
-      backend_, context, request, response, kQuickLane,
-      [this](const Caller&, const v1::CancelJobRequest& r) { return flatlight::CancelJob(backend_, r); });
+  return Answer<v1::CancelJobRequest>(backend_, context, request, response, kQuickLane,
+                                      [this](const Caller& caller, const v1::CancelJobRequest& r) {
+                                        return flatlight::CancelJob(backend_, caller, r);
+                                      });
 }
 
 grpc::ServerUnaryReactor* RenderService::PauseJob(Context* context, const Bytes* request, Bytes* response) {
   return Answer<v1::PauseJobRequest>(
       backend_, context, request, response, kQuickLane,
-      [this](const Caller&, const v1::PauseJobRequest& r) { return flatlight::PauseJob(backend_, r); });
+      [this](const Caller& caller, const v1::PauseJobRequest& r) { return flatlight::PauseJob(backend_, caller, r); });
 }
 
 grpc::ServerUnaryReactor* RenderService::ResumeJob(Context* context, const Bytes* request, Bytes* response) {
-  return Answer<v1::ResumeJobRequest>(
-      backend_, context, request, response, kQuickLane,
-      [this](const Caller&, const v1::ResumeJobRequest& r) { return flatlight::ResumeJob(backend_, r); });
+  return Answer<v1::ResumeJobRequest>(backend_, context, request, response, kQuickLane,
+                                      [this](const Caller& caller, const v1::ResumeJobRequest& r) {
+                                        return flatlight::ResumeJob(backend_, caller, r);
+                                      });
 }
 
 grpc::ServerUnaryReactor* RenderService::DeleteJob(Context* context, const Bytes* request, Bytes* response) {
-  return Answer<v1::DeleteJobRequest>(
-      backend_, context, request, response, kQuickLane,
-      [this](const Caller&, const v1::DeleteJobRequest& r) { return flatlight::DeleteJob(backend_, r); });
+  return Answer<v1::DeleteJobRequest>(backend_, context, request, response, kQuickLane,
+                                      [this](const Caller& caller, const v1::DeleteJobRequest& r) {
+                                        return flatlight::DeleteJob(backend_, caller, r);
+                                      });
 }
 
 grpc::ServerUnaryReactor* RenderService::ExplainJob(Context* context, const Bytes* request, Bytes* response) {
@@ -89,7 +93,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::WatchJob(Context* con
 }
 
 absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context& context, const Bytes& bytes) {
-  const auto caller = backend_.guard.Authorize(context);
+  const auto caller = backend_.guard.Authorize(context, v1::WatchJobRequest::descriptor()->name());
   if (!caller.ok()) return caller.status();
   backend_.telemetry.NoteCaller(context, caller->name);
   v1::WatchJobRequest request;
@@ -101,7 +105,7 @@ absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context
   if (!(rate > 0 && rate <= kMaxRate)) {
     return MakeFieldError("max_rate", std::to_string(rate) + "; allowed: more than 0, at most 1000 (updates a second)");
   }
-  const auto job = backend_.jobs.Get(*id);
+  const auto job = FindSeen(*caller, *id, backend_.jobs);
   if (!job.ok()) return job.status();
   WatchUpdate::Known known;
   if (request.epoch() == hub_.options().epoch && request.sequence() > 0) {
@@ -117,6 +121,7 @@ absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context
   const auto interval = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
   std::function<void()> on_disconnect;
   if (request.cancel_on_disconnect()) {
+    if (absl::Status allowed = CheckControl(*caller, *id, backend_.jobs); !allowed.ok()) return allowed;
     on_disconnect = [this, id = *id] { backend_.scheduler.RequestCancel(id); };
   }
   auto watcher = std::make_shared<Watcher>(hub_, *id, known, interval, std::move(on_disconnect));
@@ -126,7 +131,7 @@ absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::GetResult(Context* context, const Bytes* bytes) {
-  const auto caller = backend_.guard.Authorize(*context);
+  const auto caller = backend_.guard.Authorize(*context, v1::GetResultRequest::descriptor()->name());
   if (!caller.ok()) return new RefusedStream(caller.status());
   backend_.telemetry.NoteCaller(*context, caller->name);
   v1::GetResultRequest request;
@@ -135,8 +140,8 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::GetResult(Context* co
   const auto id = ParseJobName(request.name());
   if (!id.ok()) return new RefusedStream(id.status());
   auto stream = std::make_unique<ResultStream>(backend_.calls.Enter());
-  const absl::Status posted = PostTo(backend_.quick, 0, [this, id = *id, stream = stream.get()] {
-    const auto job = backend_.jobs.Get(id);
+  const absl::Status posted = PostTo(backend_.quick, 0, [this, caller = *caller, id = *id, stream = stream.get()] {
+    const auto job = FindSeen(caller, id, backend_.jobs);
     if (!job.ok()) return stream->Fail(ToGrpcStatus(job.status()));
     auto result = results_.Get(id, [&]() -> ResultCache::Bytes {
       auto written = backend_.jobs.WrittenResult(id);

@@ -10,6 +10,7 @@
 #include "server/gallery/gallery.h"
 #include "server/service/machine.h"
 #include "server/service/page.h"
+#include "server/service/policy.h"
 #include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
 #include "server/store/error.h"
@@ -58,13 +59,15 @@ absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const v1::GetSce
   return response;
 }
 
-absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const v1::ListScenesRequest& request) {
+absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const Caller& caller,
+                                                  const v1::ListScenesRequest& request) {
   const auto page = ParsePage(request.page_size(), request.page_token());
   if (!page.ok()) return page.status();
   const std::uint64_t position = page->position.value_or(0);
   v1::ListScenesResponse response;
   if (position < kUploads) AddGallery(position, page->size, response);
   if (!response.next_page_token().empty()) return response;
+  if (caller.role < Role::kGrader) return response;  // A name is all it takes to read an upload.
   std::optional<std::uint64_t> before;
   if (position > kUploads) before = position - kUploads;
   const std::size_t room = page->size - static_cast<std::size_t>(response.scenes_size());

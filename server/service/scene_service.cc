@@ -28,9 +28,10 @@ grpc::ServerUnaryReactor* SceneService::GetScene(Context* context, const Bytes* 
 }
 
 grpc::ServerUnaryReactor* SceneService::ListScenes(Context* context, const Bytes* request, Bytes* response) {
-  return Answer<v1::ListScenesRequest>(
-      backend_, context, request, response, kQuickLane,
-      [this](const Caller&, const v1::ListScenesRequest& r) { return flatlight::ListScenes(backend_, r); });
+  return Answer<v1::ListScenesRequest>(backend_, context, request, response, kQuickLane,
+                                       [this](const Caller& caller, const v1::ListScenesRequest& r) {
+                                         return flatlight::ListScenes(backend_, caller, r);
+                                       });
 }
 
 grpc::ServerUnaryReactor* SceneService::DeleteScene(Context* context, const Bytes* request, Bytes* response) {
@@ -57,9 +58,10 @@ grpc::ServerUnaryReactor* ServerService::GetCapabilities(grpc::CallbackServerCon
 
 grpc::ServerUnaryReactor* ServerService::GetActivity(grpc::CallbackServerContext* context,
                                                      const grpc::ByteBuffer* request, grpc::ByteBuffer* response) {
-  return Answer<v1::GetActivityRequest>(
-      backend_, context, request, response, kQuickLane,
-      [this](const Caller&, const v1::GetActivityRequest& r) { return flatlight::GetActivity(backend_, r); });
+  return Answer<v1::GetActivityRequest>(backend_, context, request, response, kQuickLane,
+                                        [this](const Caller& caller, const v1::GetActivityRequest& r) {
+                                          return flatlight::GetActivity(backend_, caller, r);
+                                        });
 }
 
 }  // namespace flatlight

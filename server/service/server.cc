@@ -97,7 +97,8 @@ struct Logs {
 
 // In the order in which they need each other; destroyed in reverse.
 struct Server::Parts {
-  Parts(const ServerOptions& options, std::unique_ptr<Storage> opened, Logs opened_logs)
+  Parts(const ServerOptions& options, std::unique_ptr<Storage> opened, Logs opened_logs,
+        std::unique_ptr<Database> users)
       : logs(std::move(opened_logs)),
         pool(options.threads),
         storage(std::move(opened)),
@@ -115,7 +116,7 @@ struct Server::Parts {
         backend{.version = BuildVersion(),
                 .limits = options.limits,
                 .threads = pool.threads(),
-                .guard = Guard(options.token),
+                .guard = Guard(options.token, std::move(users)),
                 .jobs = jobs,
                 .scenes = scenes,
                 .built_scenes = built_scenes,
@@ -265,14 +266,19 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   if (!address->path.empty() && IsListening(address->path)) return cannot_listen("another program listens there");
 
   std::unique_ptr<Storage> storage;
+  std::unique_ptr<Database> users;
   if (!options.data.empty()) {
     auto opened = Storage::Open(options.data);
     if (!opened.ok()) return opened.status();
     storage = *std::move(opened);
+    // A connection of its own: no call waits at the door for what another one writes.
+    auto connection = Database::OpenExisting(Storage::DatabasePath(options.data));
+    if (!connection.ok()) return connection.status();
+    users = *std::move(connection);
   }
   Logs logs;
   if (absl::Status opened = logs.Open(options); !opened.ok()) return opened;
-  auto parts = std::make_unique<Parts>(options, std::move(storage), std::move(logs));
+  auto parts = std::make_unique<Parts>(options, std::move(storage), std::move(logs), std::move(users));
   if (absl::Status restored = parts->Restore(); !restored.ok()) return restored;
   if (absl::Status served = parts->ServeMetrics(options.metrics_address); !served.ok()) return served;
   grpc::EnableDefaultHealthCheckService(true);

@@ -32,6 +32,10 @@ bool IsName(std::string_view name) {
 }
 
 absl::Status CheckName(const std::string& place, const std::string& what, const std::string& name) {
+  if (name == "anonymous" || name == "owner") {
+    return MakeError(absl::StatusCode::kInvalidArgument, "USER_INVALID",
+                     place + what + " \"" + name + "\" is the server's own: choose another");
+  }
   if (IsName(name)) return absl::OkStatus();
   return MakeError(absl::StatusCode::kInvalidArgument, "USER_INVALID",
                    place + what + " \"" + name.substr(0, kMostNameBytes) +

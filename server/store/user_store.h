@@ -20,7 +20,7 @@ std::string_view RoleName(Role role);
 std::optional<Role> RoleOf(std::string_view name);
 
 struct User {
-  std::string name;  // 1 to 64 of a-z, 0-9 and . _ - @, the first a letter or digit.
+  std::string name;  // 1 to 64 of a-z, 0-9 and . _ - @, the first a letter or digit; not anonymous, owner.
   Role role = Role::kStudent;
   std::vector<std::string> groups;  // Named as users are; sorted, each once.
   bool revoked = false;             // Has no token.

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who may do what: the one table that every call is held against, and the rules about whose a job is.
+#ifndef FLATLIGHT_SERVER_SERVICE_POLICY_H_
+#define FLATLIGHT_SERVER_SERVICE_POLICY_H_
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "server/store/job_store.h"
+#include "server/store/user_store.h"
+
+namespace flatlight {
+
+struct Caller {
+  std::string name;
+  Role role = Role::kStudent;
+};
+
+// Each RPC has a request message of its own, by whose name it is found.
+struct PolicyRow {
+  std::string_view request;  // "CreateJobRequest", of flatlight.v1.
+  Role least;                // Who has less is refused.
+};
+const std::vector<PolicyRow>& Policy();
+
+// OK, or PERMISSION_DENIED with ROLE_TOO_LOW; also where the table has no row.
+absl::Status CheckRole(const Caller& caller, std::string_view request);
+
+// One's own jobs, and all of them for graders, instructors and admins.
+bool MaySee(const Caller& caller, const JobSpec& job);
+// One's own jobs, and all of them for instructors and admins: to cancel, pause, resume and delete.
+bool MayControl(const Caller& caller, const JobSpec& job);
+
+// Jobs that the caller may not see are NOT_FOUND, in the very words of those that are not there.
+absl::StatusOr<JobRecord> FindSeen(const Caller& caller, const JobId& id, JobStore& jobs);
+// Those that it sees but may not control are PERMISSION_DENIED with NOT_YOUR_JOB.
+absl::Status CheckControl(const Caller& caller, const JobId& id, JobStore& jobs);
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_SERVER_SERVICE_POLICY_H_

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A server that knows its users, as its keeper and a class use it. Run with FLATLIGHT FLATLIGHTD."""
+import csv
+import io
+import json
+import os
+import subprocess
+import sys
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from cli_case import FLATLIGHTD, CliCase  # noqa: E402
+from daemon import Daemon  # noqa: E402
+
+
+class UsersTest(CliCase):
+    def user(self, *arguments, status=0):
+        run = subprocess.run([FLATLIGHTD, "user", *arguments, "--data", self.path("data")], capture_output=True, text=True,
+                             timeout=60, cwd=self.folder)
+        self.assertEqual(run.returncode, status, f"{arguments}\n{run.stdout}\n{run.stderr}")
+        return run
+
+    def tokens(self, *arguments):
+        return {row["name"]: row["token"] for row in csv.DictReader(io.StringIO(self.user("add", *arguments).stdout))}
+
+    def as_user(self, token, *arguments, status=0):
+        return self.run_cli(*arguments, status=status, env=self.environment | {"FLATLIGHT_TOKEN": token})
+
+    def test_a_class_sees_its_own_jobs(self):
+        with Daemon(FLATLIGHTD, arguments=("--data", self.path("data"))) as daemon:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            self.run_cli("jobs")
+            self.write("class.csv", "name,role,groups\nada,,lab-1;lab-2\nbob,student,\ngus,grader,\n")
+            tokens = self.tokens("--roster", "class.csv")
+            self.assertEqual(list(tokens), ["ada", "bob", "gus"])
+            tokens |= self.tokens("ina", "--role", "instructor", "--group", "staff")
+            self.assertEqual(self.user("list").stdout, "name,role,groups,state\nada,student,lab-1;lab-2,active\n"
+                             "bob,student,,active\ngus,grader,,active\nina,instructor,staff,active\n")
+
+            self.assertIn("Bearer TOKEN", self.run_cli("jobs", status=4).stderr)
+            job = self.as_user(tokens["ada"], "submit", "gallery:cornell", "--samples", "1000000000",
+                               "--quiet").stdout.strip()
+            self.assertIn(job[5:], self.as_user(tokens["ada"], "jobs").stdout)
+            self.assertNotIn(job[5:], self.as_user(tokens["bob"], "jobs").stdout)
+            self.assertIn("does not exist", self.as_user(tokens["bob"], "show", job, status=2).stderr)
+            self.assertIn("not yours", self.as_user(tokens["gus"], "cancel", job, status=4).stderr)
+            activity = json.loads(self.as_user(tokens["bob"], "top", "--json").stdout)
+            self.assertEqual([user["user"] for user in activity["users"]], ["(others)"])
+            self.assertNotIn("jobs", activity)
+            top = self.as_user(tokens["bob"], "top", "--once").stdout
+            self.assertIn("and 1 other job", top)
+            self.assertNotIn(job[5:13], top)
+            self.assertIn(job[5:13], self.as_user(tokens["ina"], "top", "--once").stdout)
+
+            self.user("revoke", "ada")
+            self.assertIn("revoked", self.as_user(tokens["ada"], "jobs", status=4).stderr)
+            self.as_user(tokens["ina"], "cancel", job)
+            again = self.tokens("ada")["ada"]
+            self.assertIn(job[5:], self.as_user(again, "jobs").stdout)
+        for name in os.listdir(self.path("data")):
+            if os.path.isfile(self.path("data/" + name)):
+                with open(self.path("data/" + name), "rb") as file:
+                    self.assertNotIn(again.encode(), file.read(), name)
+
+    def test_mistakes(self):
+        self.assertIn("NAME or --roster", self.user("add", status=2).stderr)
+        self.assertIn("--role", self.user("add", "ada", "--role", "king", status=2).stderr)
+        self.assertIn("the server's own", self.user("add", "owner", status=2).stderr)
+        self.assertIn("no user \"ada\"", self.user("revoke", "ada", status=1).stderr)
+        self.tokens("ada")
+        self.assertIn("already", self.user("add", "ada", status=1).stderr)
+        self.write("class.csv", "name\nbob\nada\n")
+        self.assertIn("class.csv:3", self.user("add", "--roster", "class.csv", status=1).stderr)
+        self.assertEqual(self.user("list").stdout, "name,role,groups,state\nada,student,,active\n")
+        self.assertIn("excludes", self.user("add", "--roster", "class.csv", "--role", "grader", status=2).stderr)
+        self.assertIn("none.csv", self.user("add", "--roster", "none.csv", status=1).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)
