@@ -28,7 +28,7 @@ void CheckPanels(const Scene& scene, bool reflects, const std::string& path, con
     diagnostics.Add(path, "reference needs a scene that reflects by lambertian materials alone, and curve \"" +
                               curve->name + "\" has another: use " + other);
   }
-  if (scene.traits().elements > kMostReferencePieces) {
+  if (reflects && scene.traits().elements > kMostReferencePieces) {
     diagnostics.Add(path, "reference does scenes of up to " + Text(kMostReferencePieces) +
                               " straight and arced pieces, and this one has " + Text(scene.traits().elements) +
                               ": use " + other);

@@ -56,7 +56,7 @@ Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, 
       first_residual_(mesh_.size(), channels, kResidualCoefficients),
       rounding_(mesh_.size() * channels),
       spread_(mesh_.size() * kNodes * channels) {
-  FLATLIGHT_DCHECK(scene_.traits().lambertian && max_bounces != 0u);
+  FLATLIGHT_DCHECK(mesh_.size() == 0 || (scene_.traits().lambertian && max_bounces != 0u));
   for (std::size_t c = 0; before && !max_bounces && c < channels; ++c) start_.push_back(before->OnNodesOf(mesh_, c));
   if (before) rows_before_ = std::move(before->rows_);
   for (std::size_t i = 0; i < mesh_.size(); ++i) {

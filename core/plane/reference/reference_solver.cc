@@ -43,11 +43,17 @@ std::optional<std::uint32_t> MeaningfulBounces(const Scene& world, std::optional
   return bounces;
 }
 
+// Then there are no panels, nor anything that they would need.
+bool IsDirectLight(const Scene& world, const ReferenceOptions& options) {
+  return options.max_bounces == 0u || world.traits().max_reflectance == 0;
+}
+
 std::unique_ptr<SolvedWorld> NewWorld(std::shared_ptr<const RayCaster> caster, const ReferenceOptions& options) {
   auto world = std::make_unique<SolvedWorld>();
   world->caster = std::move(caster);
   world->charts = ChartsOf(world->caster->scene());
-  world->meetings = Meetings(world->caster->scene(), world->charts);
+  const Scene& scene = world->caster->scene();
+  if (!IsDirectLight(scene, options)) world->meetings = Meetings(scene, world->charts);
   world->channels = static_cast<std::size_t>(options.channels);
   world->max_bounces = options.max_bounces;
   return world;
@@ -99,8 +105,7 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
     step_ = FirstOfPoints();
     return;
   }
-  // Direct light alone needs no panels.
-  if (options_.max_bounces == 0u) {
+  if (IsDirectLight(world, options_)) {
     options_.max_bounces.reset();
     world_->events.resize(2 * world.elements().size());
     StartMesh(PanelMesh(world.elements().size(), {}));

@@ -223,8 +223,40 @@ TEST(ReferenceRenderingTest, RefusesWhatItCannotDo) {
       Mistakes(*many.Build(), Reference(1e-3)),
       ElementsAre("settings.method: reference does scenes of up to 2048 straight and arced pieces, and this one "
                   "has 2049: use path-tracing"));
+  EXPECT_THAT(Mistakes(*many.Build(), direct), ElementsAre());
   const auto mirror_room = SquareRoom({.reflectance = {1}, .radiance = {1}}, 1).Build();
   EXPECT_THAT(Mistakes(*mirror_room, Reference(1e-3)), ElementsAre(HasSubstr("light never fades")));
+}
+
+// Of direct light there is no limit to curves, nor to their materials, and no work that grows by pairs of them.
+TEST(ReferenceRenderingTest, DirectLightIsThatOfTheExactMethod) {
+  for (const bool black : {false, true}) {
+    SceneMaker maker;
+    const Look wall{.reflectance = {black ? 0.0 : 0.5}};
+    maker.Segment("floor", {-1, 0}, {1, 0}, wall);
+    maker.Segment("lamp", {0.5, 2}, {-0.5, 2}, {.reflectance = wall.reflectance, .radiance = {5}});
+    for (int i = 0; i < 3000; ++i) {
+      const double x = -0.9 + 1.8 * i / 3000;
+      maker.Segment("blade" + std::to_string(i), {x, 0.9}, {x + 3e-4, 0.9}, wall);
+    }
+    if (!black) maker.Segment("mirror", {1, 0}, {1, 2}, {.material = MirrorDescription{{0.9}}});
+    maker.Probe("floor", 4);
+    const auto scene = maker.Build();
+    Settings settings = Reference(1e-6);
+    if (!black) settings.max_bounces = 0;
+    const Ended reference = Render(scene, settings);
+    settings.method = Method::kExact;
+    settings.target_error.reset();
+    const Ended exact = Render(scene, settings);
+    EXPECT_EQ(reference.reason, EndReason::kTargetReached);
+    EXPECT_GT(exact.field->probes[0].irradiance[0], 0);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double error = reference.field->probes[0].irradiance_error[i];
+      EXPECT_LT(error, 1e-9);
+      // Both have such an error.
+      EXPECT_NEAR(reference.field->probes[0].irradiance[i], exact.field->probes[0].irradiance[i], 2 * error);
+    }
+  }
 }
 
 TEST(ReferenceRenderingTest, ThePlanSaysWhatComes) {
