@@ -143,6 +143,7 @@ void PointBlocks::Work(Shard& shard, const Cancellation& cancellation) const {
   std::vector<double> block(width);
   shard.nodes.resize(shard.pieces.size() * width);
   shard.ranges.resize(shard.pieces.size() * 2 * channels_);
+  shard.rays.resize(shard.pieces.size());
   for (std::size_t i = 0; i < shard.pieces.size(); ++i) {
     const Piece& piece = shard.pieces[i];
     BlockTree tree(width);
@@ -150,7 +151,7 @@ void PointBlocks::Work(Shard& shard, const Cancellation& cancellation) const {
     for (std::uint64_t k = 0; k < (std::uint64_t{1} << piece.level); ++k) {
       std::fill(block.begin(), block.end(), 0.0);
       source->AddBlock(static_cast<std::uint32_t>(piece.first + k), cancellation,
-                       std::span(block).first(channels_ * kReplicates), shard.rays);
+                       std::span(block).first(channels_ * kReplicates), shard.rays[i]);
       if (cancellation.cancelled()) return;
       for (std::size_t c = 0; c < channels_; ++c) {
         for (std::size_t r = 0; r < kReplicates; ++r) {
@@ -174,11 +175,11 @@ bool PointBlocks::Merge(const std::vector<Shard>& shards) {
   for (const Shard& shard : shards) {
     all = all && shard.complete;
     if (!shard.complete) continue;
-    rays_ += shard.rays;
     for (std::size_t i = 0; i < shard.pieces.size(); ++i) {
       const Piece& piece = shard.pieces[i];
       // Blocks after a gap that an incomplete shard left are done again later.
       if (blocks(piece.point) != piece.first) continue;
+      rays_ += shard.rays[i];
       if (piece.first == 0) {
         sampler_.Doubts(piece.point, std::span(doubts_).subspan(piece.point * channels_, channels_));
       }

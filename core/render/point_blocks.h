@@ -95,7 +95,7 @@ class PointBlocks {
     std::vector<Piece> pieces;
     std::vector<double> nodes;        // Sums, one node a piece.
     std::vector<SampleRange> ranges;  // Piece, then half, then channel.
-    double rays = 0;
+    std::vector<double> rays;         // Of each piece.
     bool complete = false;
   };
   // The next work in order.

@@ -107,6 +107,26 @@ TEST(ProgressiveSamplingTest, BudgetsAreKept) {
   }
 }
 
+// Backwards, so that the first work comes last, and too late.
+class BackwardExecutor final : public Executor {
+ public:
+  int threads() const override { return 2; }
+  void ParallelFor(std::size_t count, int /*max_threads*/, const std::function<void(std::size_t)>& work) override {
+    for (std::size_t i = count; i > 0; --i) work(i - 1);
+  }
+};
+
+TEST(ProgressiveSamplingTest, RaysOfWorkThatIsDoneAgainCountOnce) {
+  ManualClock clock;
+  SamplingGoal goal;
+  goal.samples = 100'000;
+  ProgressiveSampling sampling(std::make_unique<UniformSampler>(&clock, std::chrono::microseconds(100)), {3}, goal);
+  BackwardExecutor executor;
+  const Cancellation never;
+  while (!sampling.done()) sampling.Advance(executor, 2, never, clock, std::chrono::milliseconds(7));
+  EXPECT_EQ(sampling.rays(), 3 * 100'000);
+}
+
 TEST(ProgressiveSamplingTest, TimeLimitEndsAtEqualCountsAndInTime) {
   for (const double limit : {0.05, 0.5, 3.0}) {
     ManualClock clock;
