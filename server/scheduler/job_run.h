@@ -43,9 +43,7 @@ struct JobRun {
 
   explicit JobRun(const Clock& clock) : stopwatch(clock) {}
 
-  bool has_place() const {
-    return stage == Stage::kPreparing || stage == Stage::kReady || stage == Stage::kSlicing;
-  }
+  bool has_place() const { return stage == Stage::kPreparing || stage == Stage::kReady || stage == Stage::kSlicing; }
   // Where it stands in the queue for slices.
   FairQueue<std::shared_ptr<JobRun>>::Place Turn() const {
     return {spec->job_class, spec->owner, state.field == nullptr};
@@ -60,11 +58,11 @@ struct JobRun {
   Stage stage = Stage::kWaiting;
   std::shared_ptr<JobRun> leader;                  // In stage kFollowing; else null.
   std::vector<std::shared_ptr<JobRun>> followers;  // Whose leader this is, in the order in which they came.
-  bool pause_wanted = false;             // Of a slice under way: by its end.
-  JobState state;                        // Published last. In stage kSlicing nobody but the runner writes it.
-  std::unique_ptr<Rendering> rendering;  // In stage kSlicing the runner's alone.
-  Stopwatch stopwatch;                   // Stands still while the job is paused.
-  Clock::Time started;                   // On the stopwatch.
+  bool pause_wanted = false;                       // Of a slice under way: by its end.
+  JobState state;                                  // Published last. In stage kSlicing nobody but the runner writes it.
+  std::unique_ptr<Rendering> rendering;            // In stage kSlicing the runner's alone.
+  Stopwatch stopwatch;                             // Stands still while the job is paused.
+  Clock::Time started;                             // On the stopwatch.
   Clock::Time published;
   Clock::Time entered;                          // On the stopwatch: accepted or restored.
   std::optional<Clock::Time> cancel_requested;  // On the scheduler's clock.

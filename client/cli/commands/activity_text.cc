@@ -32,17 +32,17 @@ using RaysOf = std::map<std::string, double>;
 
 std::string JobTable(const v1::GetActivityResponse& now, const RaysOf& rays_before, double seconds) {
   std::vector<std::vector<std::string>> rows = {
-      {"JOB", "USER", "STATE", " DONE", "  TIME", "  RAYS/S", "SCENE", "METHOD", "CLASS"}};
+      {"JOB", "USER", "CLASS", "STATE", " DONE", "  TIME", "  RAYS/S", "SCENE", "METHOD"}};
   for (const v1::JobActivity& activity : now.jobs()) {
     const v1::Job& job = activity.job();
     const auto before = rays_before.find(job.name());
     const double rays = before == rays_before.end() ? 0 : std::max(0.0, job.progress().rays() - before->second);
     rows.push_back({job.name().substr(job.name().find('/') + 1, 8),
-                    CutToWidth(Printable(activity.owner()), kUserColumns), StateText(job),
+                    CutToWidth(Printable(activity.owner()), kUserColumns), OptionName(job.job_class()), StateText(job),
                     Right(std::to_string(static_cast<int>(100 * job.progress().fraction())) + " %", 5),
                     Right(FormatSeconds(job.progress().elapsed_seconds()), 6),
                     Right(seconds > 0 && rays > 0 ? Count(rays / seconds) : "-", 8), Printable(job.scene()),
-                    OptionName(activity.method()), OptionName(job.job_class())});
+                    OptionName(activity.method())});
   }
   return FormatTable(rows);
 }

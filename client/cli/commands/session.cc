@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/commands/session.h"
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <string>
 #include <utility>
 
@@ -15,12 +18,27 @@ std::string Variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
+// The first line of --token-file, or the variable.
+absl::StatusOr<std::string> Token(const CommandLine& line) {
+  if (line.token_file.empty()) return Variable("FLATLIGHT_TOKEN");
+  std::ifstream file(line.token_file);
+  std::string token;
+  if (!file.is_open()) return UsageError("--token-file: cannot read " + line.token_file + ": " + std::strerror(errno));
+  std::getline(file, token);
+  if (token.ends_with('\r')) token.pop_back();
+  if (token.empty())
+    return UsageError("--token-file: the first line of " + line.token_file + " is empty; a token belongs there");
+  return token;
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Session>> Session::Open(const CommandLine& line, WithoutServer without,
                                                        Interruption& interruption) {
   auto session = std::make_unique<Session>();
-  std::string text = line.server, source = "--server", token = Variable("FLATLIGHT_TOKEN");
+  std::string text = line.server, source = "--server";
+  auto token = Token(line);
+  if (!token.ok()) return token.status();
   if (text.empty()) {
     text = Variable("FLATLIGHT_SERVER");
     source = "FLATLIGHT_SERVER";
@@ -39,7 +57,7 @@ absl::StatusOr<std::unique_ptr<Session>> Session::Open(const CommandLine& line, 
   }
   const auto address = ParseServerAddress(text, source);
   if (!address.ok()) return address.status();
-  auto connection = Connection::Open(*address, token, interruption);
+  auto connection = Connection::Open(*address, *token, interruption);
   if (!connection.ok()) return session->Explain(connection.status());
   session->connection_ = *std::move(connection);
   return session;

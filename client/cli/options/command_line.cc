@@ -32,6 +32,8 @@ CLI::App& AddCommand(CLI::App& app, const std::string& name, const std::string& 
 
 void AddServer(CLI::App& app, Raw& raw) {
   app.add_option("--server", raw.server, "HOST:PORT or unix:PATH (or FLATLIGHT_SERVER)");
+  app.add_option("--token-file", raw.line.token_file, "a file whose first line is the token (or FLATLIGHT_TOKEN)")
+      ->type_name("FILE");
 }
 
 void AddJson(CLI::App& app, Raw& raw, const std::string& what) {

@@ -15,10 +15,11 @@
 namespace flatlight {
 
 struct CommandLine {
-  std::string version;  // Of this program: release and commit.
-  std::string command;  // "render", "bench compare", ... Empty if all that is wanted is `text`.
-  std::string text;     // Help or version, to print.
-  std::string server;   // Of --server; empty if not given.
+  std::string version;     // Of this program: release and commit.
+  std::string command;     // "render", "bench compare", ... Empty if all that is wanted is `text`.
+  std::string text;        // Help or version, to print.
+  std::string server;      // Of --server; empty if not given.
+  std::string token_file;  // Of --token-file; empty if not given.
   bool json = false;
   bool quiet = false;
   std::string scene;                    // SCENE as written; of `scenes`, the name of one, or empty.

@@ -309,6 +309,11 @@ class EndToEnd(PictureReader, CliCase):
             self.run_cli("jobs", status=4, env=server)
             self.run_cli("jobs", status=4, env={**server, "FLATLIGHT_TOKEN": "wrong"})
             self.run_cli("jobs", env={**server, "FLATLIGHT_TOKEN": "secret"})
+            self.write("token", "secret\n")
+            self.run_cli("jobs", "--token-file", "token", env={**server, "FLATLIGHT_TOKEN": "wrong"})
+            self.write("empty", "\n")
+            self.assertIn("empty is empty", self.run_cli("jobs", "--token-file", "empty", status=2, env=server).stderr)
+            self.assertIn("cannot read none", self.run_cli("jobs", "--token-file", "none", status=2, env=server).stderr)
 
     def test_a_job_in_steps(self):
         with Daemon(FLATLIGHTD) as daemon:

@@ -13,8 +13,8 @@ namespace flatlight {
 namespace {
 
 using ::testing::Each;
-using ::testing::SizeIs;
 using testing::IsOk;
+using ::testing::SizeIs;
 
 class SharingTest : public testing::SchedulerFixture {
  protected:
