@@ -259,6 +259,7 @@ void ExactSolver::AddIntervals(const std::vector<VisibleInterval>& intervals, co
   turn_at_horizon(-1, scene_.environment());
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     const VisibleInterval& interval = intervals[i];
+    AddUndecided<kChannels>(intervals, i, parts, receiver, value);
     Spectrum after = scene_.environment();
     if (interval.part != VisibleInterval::kNothing)
       after = scene_.curve_of(parts[static_cast<std::size_t>(interval.part)].element).EmittedRadiance(interval.side);
@@ -266,12 +267,10 @@ void ExactSolver::AddIntervals(const std::vector<VisibleInterval>& intervals, co
     if (IsSlit(intervals, i, parts, receiver)) {
       // As wide as it is computed to be, to the accuracy of both ends.
       const Edge &begin = interval.begin, &end = intervals[i + 1].begin;
-      const double known = scene_.coordinate_error() + receiver.displaced;
-      const double width = std::abs(SineDifference(begin, end, receiver)) +
-                           BoundErrors(begin, receiver.curvature, known).s +
-                           BoundErrors(end, receiver.curvature, known).s;
+      Spectrum most;
       for (int channel = 0; channel < kChannels; ++channel)
-        value.irradiance_error[channel] += std::max(after[channel], sum.before()[channel]) * width;
+        most[channel] = std::max(after[channel], sum.before()[channel]);
+      AddDoubt<kChannels>(begin, Length(end.point - begin.point), most, receiver, value);
       continue;
     }
     sum.Next() = interval.begin;
@@ -279,6 +278,64 @@ void ExactSolver::AddIntervals(const std::vector<VisibleInterval>& intervals, co
   }
   turn_at_horizon(1, {});
   AddMeetings<kChannels>(receiver, value);
+}
+
+template <int kChannels>
+void ExactSolver::AddDoubt(const Edge& edge, double wide, const Spectrum& most, const Receiver& receiver,
+                           ExactValue& value) const {
+  const EdgeErrors errors = BoundErrors(edge, receiver.curvature, scene_.coordinate_error() + receiver.displaced + wide,
+                                        receiver.curvature_change);
+  for (int channel = 0; channel < kChannels; ++channel) {
+    const double size = most[channel];
+    // Where radiance is summed up by angle, and in rotation, no cosine makes it less.
+    value.irradiance_error[channel] += size * (receiver.half_angle > 0 ? errors.c : errors.s);
+    if (options_.derivatives >= 1) value.rotation_error[channel] += size * errors.c;
+    if (options_.derivatives >= 1) value.gradient_error[channel] += size * errors.s_first;
+    if (options_.derivatives >= 2) value.hessian_error[channel] += size * errors.s_second;
+  }
+}
+
+template <int kChannels>
+void ExactSolver::AddUndecided(const std::vector<VisibleInterval>& intervals, std::size_t i,
+                               const std::vector<Part>& parts, const Receiver& receiver, ExactValue& value) const {
+  if (i == 0) return;
+  const Edge& before = intervals[i - 1].begin;
+  Edge edge = intervals[i].begin;
+  if (edge.kind == Edge::Kind::kHorizon || edge.kind == Edge::Kind::kTouch) return;
+  // Ends are known as coordinates are, however flat the angle at which curves meet there.
+  edge.turn = edge.stretch = 0;
+  // Two edges of one small thing, or of one gap, in an order that rounding decides.
+  const double known = scene_.coordinate_error() + receiver.displaced;
+  const double doubt = 2 * known * (before.q + edge.q) + 8 * kUnitRoundoff;
+  if (before.kind != Edge::Kind::kHorizon && before.kind != Edge::Kind::kTouch && edge.key - before.key <= doubt &&
+      std::abs(before.q - edge.q) <= kBehind * edge.q && (before.kind != edge.kind || before.point != edge.point)) {
+    AddDifference<kChannels>(before, edge, receiver, value);
+    AddDoubt<kChannels>(edge, 0, brightest_, receiver, value);
+  }
+  const std::int32_t last = intervals[i - 1].part, next = intervals[i].part;
+  if (edge.kind != Edge::Kind::kVertex || last == next) return;
+  if (last == VisibleInterval::kNothing || next == VisibleInterval::kNothing) return;
+  const Element& e = scene_.element(parts[static_cast<std::size_t>(last)].element);
+  const Element& f = scene_.element(parts[static_cast<std::size_t>(next)].element);
+  const double near = 2 * scene_.touch_distance() + 8 * known;
+  for (const Point2 end : {e.a, e.b})
+    for (const Point2 other : {f.a, f.b})
+      if (end != other && Length(end - edge.point) <= near && Length(other - edge.point) <= near)
+        AddDoubt<kChannels>(edge, Length(other - end), brightest_, receiver, value);
+}
+
+template <int kChannels>
+void ExactSolver::AddDifference(const Edge& a, const Edge& b, const Receiver& receiver, ExactValue& value) const {
+  const EdgeDerivatives at_a = Derive(a, receiver.curvature, receiver.curvature_change);
+  const EdgeDerivatives at_b = Derive(b, receiver.curvature, receiver.curvature_change);
+  for (int channel = 0; channel < kChannels; ++channel) {
+    const double size = brightest_[channel];
+    // An angle is at most twice the difference of its keys.
+    value.irradiance_error[channel] += size * std::abs(receiver.half_angle > 0 ? 2 * (a.key - b.key) : a.s - b.s);
+    if (options_.derivatives >= 1) value.rotation_error[channel] += size * std::abs(a.c - b.c);
+    if (options_.derivatives >= 1) value.gradient_error[channel] += size * std::abs(at_a.s_first - at_b.s_first);
+    if (options_.derivatives >= 2) value.hessian_error[channel] += size * std::abs(at_a.s_second - at_b.s_second);
+  }
 }
 
 bool ExactSolver::IsSlit(const std::vector<VisibleInterval>& intervals, std::size_t i, const std::vector<Part>& parts,

@@ -90,6 +90,18 @@ class ExactSolver {
   // Whether an interval shows what is behind two ends that touch.
   bool IsSlit(const std::vector<VisibleInterval>& intervals, std::size_t i, const std::vector<Part>& parts,
               const Receiver& receiver) const;
+  // What may be seen between an interval's edge and the last one's, where rounding decides whether anything is: of two
+  // edges in one direction and at one distance, and of two things side by side that end in one place to rounding only.
+  template <int kChannels>
+  void AddUndecided(const std::vector<VisibleInterval>& intervals, std::size_t i, const std::vector<Part>& parts,
+                    const Receiver& receiver, ExactValue& value) const;
+  // What light between two edges makes of irradiance and its derivatives.
+  template <int kChannels>
+  void AddDifference(const Edge& a, const Edge& b, const Receiver& receiver, ExactValue& value) const;
+  // What up to so much light may change if it comes, or does not, from beside an edge, no farther from it than the
+  // accuracy of coordinates and `wide`.
+  template <int kChannels>
+  void AddDoubt(const Edge& edge, double wide, const Spectrum& most, const Receiver& receiver, ExactValue& value) const;
   template <int kChannels>
   void AddMeetings(const Receiver& receiver, ExactValue& value) const;
 

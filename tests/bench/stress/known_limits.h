@@ -16,8 +16,7 @@ struct KnownLimit {
   const char* reason;
 };
 
-// Of the closed form of direct light (core/plane/exact), but for `sampling` and `oracle`, which are those of the other
-// side.
+// Of the closed form of direct light (core/plane/exact), but for `sampling`, which is that of the other side.
 inline constexpr KnownLimit kKnownLimits[] = {
     {"corners", "similarity", 0.0003, "derivatives where walls meet at small angles, or rounding puts a point aside"},
     {"junctions", "similarity", 0.001,
@@ -33,11 +32,6 @@ inline constexpr KnownLimit kKnownLimits[] = {
     {"grid arcs", "similarity", 0.001, "derivatives where a wall ends on a circle that it touches"},
     {"grid arcs", "reversal", 0.001, "second derivatives where curves touch and end in one place"},
     {"closed arcs", "similarity", 0.003, "an arc and its chord that meet to rounding leave slits of up to 1e-12"},
-    {"closed arcs", "oracle", 0.01,
-     "walls that meet to rounding leave slits: light of 1e-17 is left out, with a bound of 0"},
-    {"arcs", "oracle", 0.02, "full circles close to rounding, for the oracle: light of 1e-15 comes through"},
-    {"scatter", "oracle", 0.01, "full circles close to rounding, for the oracle: light of 1e-15 comes through"},
-    {"nested", "oracle", 0.01, "full circles close to rounding, for the oracle: light of 1e-15 comes through"},
     {"arcs", "rays", 0.0005, "arcs of 1e-11: which side is seen is below rounding"},
     {"slivers", "rays", 0.0005, "points in corners of 1e-3: rays start farther on, where they see 1e-8 more or less"},
     {"slivers", "sampling", 0.0001, "walls 5e-15 apart, 2e-6 from a point: which one is in front"},

@@ -62,6 +62,14 @@ Disturbance DisturbanceAt(const Built& built, const Receiver& receiver, double r
   return disturbance;
 }
 
+// How near the nearest end of a curve is.
+double NearestEnd(const Scene& scene, Point2 position) {
+  double nearest = 2;
+  for (const Element& element : scene.elements())
+    nearest = std::min({nearest, Length(element.a - position), Length(element.b - position)});
+  return nearest;
+}
+
 // Whether the value there depends on which side of another curve rounding puts the point, or on which of two curves.
 bool IsAmbiguous(const Built& built, std::size_t i, double rounding, bool reversed) {
   const Receiver& receiver = *built.points[i];
@@ -113,9 +121,16 @@ Failure Compare(const std::string& name, const Built& a, const Built& b, const C
     const double stated = looseness * v.irradiance_error[0] + light * w.irradiance_error[0];
     // What is at the horizon, to rounding, adds nothing to irradiance yet.
     const double floor = disturbance.position * LargestRadiance(*a.scene);
-    double bound = stated;
-    double gradient_bound = looseness * v.gradient_error[0] + light * length * w.gradient_error[0] + floor;
-    double hessian_bound = looseness * v.hessian_error[0] + light * length * length * w.hessian_error[0] + floor;
+    // What the other scene's rounding lifts above it grows as a square, which no proportion holds: of a direction's
+    // turn by this much.
+    const double q = disturbance.position > 0 ? 1 / NearestEnd(*a.scene, a.points[i]->position) : 0;
+    const double turn = disturbance.position * q;
+    const double lifted = turn * turn * LargestRadiance(*a.scene);
+    double bound = stated + lifted;
+    double gradient_bound =
+        looseness * v.gradient_error[0] + light * length * w.gradient_error[0] + floor + 4 * lifted * q;
+    double hessian_bound =
+        looseness * v.hessian_error[0] + light * length * length * w.hessian_error[0] + floor + 16 * lifted * q * q;
     const auto agree = [&] {
       return std::abs(v.irradiance[0] - irradiance) <= bound && std::abs(v.gradient[0] - gradient) <= gradient_bound &&
              std::abs(v.hessian[0] - hessian) <= hessian_bound;

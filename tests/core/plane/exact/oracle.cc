@@ -14,6 +14,7 @@ namespace {
 constexpr double kOwnPlace = 1e-20;
 
 const Quad kHalfPi = asinq(1);
+constexpr double kFullTurn = 0x1.921fb54442d18p+2;
 
 }  // namespace
 
@@ -44,6 +45,8 @@ Oracle::Oracle(const SceneDescription& scene) {
       line.arc = true;
       line.cx = arc.center.x, line.cy = arc.center.y, line.radius = arc.radius;
       line.start = arc.start_angle, line.sweep = arc.sweep_angle;
+      // 2 pi in 53 bits says a full circle, which closes.
+      if (std::abs(arc.sweep_angle) >= kFullTurn) line.sweep = arc.sweep_angle > 0 ? 4 * kHalfPi : -4 * kHalfPi;
       add(line);
       low = std::min({low, arc.center.x, arc.center.y}), high = std::max({high, arc.center.x, arc.center.y});
     }
