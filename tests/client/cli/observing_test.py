@@ -160,7 +160,8 @@ class ObservingTest(CliCase):
         self.assertRegex(text, r"work +[\d.]+ M rays/s on \d\.\d\d of \d+ processors?")
         self.assertRegex(text, r"(?m)^anonymous +2 +0 +1 ")
         rows = [line.split() for line in lines if line[:8] in {job[5:13] for job in endless}]
-        self.assertEqual([row[2] for row in rows], ["running", "running", "paused"])
+        self.assertEqual({row[2] for row in rows}, {"interactive"})
+        self.assertEqual([row[3] for row in rows], ["running", "running", "paused"])
         self.assertEqual(rows[2][0], endless[1][5:13])
         self.assertIn("cornell", rows[2])
         activity = json.loads(self.run_cli("top", "--json").stdout)
