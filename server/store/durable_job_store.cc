@@ -91,7 +91,7 @@ absl::Status DurableJobStore::SavePause(const JobId& id) {
   const std::lock_guard lock(pausing_);
   const auto job = memory_.Get(id);
   if (!job.ok() || HasEnded(job->state->phase)) return absl::OkStatus();
-  const absl::Status written = archive_.SavePause(id, job->state->phase == JobPhase::kPaused);
+  absl::Status written = archive_.SavePause(id, job->state->phase == JobPhase::kPaused);
   NoteHealth(written);
   return written;
 }
