@@ -107,13 +107,21 @@ TEST(ProgressiveSamplingTest, BudgetsAreKept) {
   }
 }
 
-// Backwards, so that the first work comes last, and too late.
+// Backwards, and with a pause now and then: what comes first in order comes too late.
 class BackwardExecutor final : public Executor {
  public:
+  explicit BackwardExecutor(ManualClock& clock) : clock_(clock) {}
   int threads() const override { return 2; }
   void ParallelFor(std::size_t count, int /*max_threads*/, const std::function<void(std::size_t)>& work) override {
-    for (std::size_t i = count; i > 0; --i) work(i - 1);
+    for (std::size_t i = count; i > 0; --i) {
+      if (++calls_ % 7 == 0) clock_.Advance(std::chrono::milliseconds(5));
+      work(i - 1);
+    }
   }
+
+ private:
+  ManualClock& clock_;
+  int calls_ = 0;
 };
 
 TEST(ProgressiveSamplingTest, RaysOfWorkThatIsDoneAgainCountOnce) {
@@ -121,7 +129,7 @@ TEST(ProgressiveSamplingTest, RaysOfWorkThatIsDoneAgainCountOnce) {
   SamplingGoal goal;
   goal.samples = 100'000;
   ProgressiveSampling sampling(std::make_unique<UniformSampler>(&clock, std::chrono::microseconds(100)), {3}, goal);
-  BackwardExecutor executor;
+  BackwardExecutor executor(clock);
   const Cancellation never;
   while (!sampling.done()) sampling.Advance(executor, 2, never, clock, std::chrono::milliseconds(7));
   EXPECT_EQ(sampling.rays(), 3 * 100'000);
