@@ -2,6 +2,9 @@
 #include "server/app/options.h"
 
 #include <CLI/CLI.hpp>
+#include <string>
+
+#include "server/store/user_store.h"
 
 namespace flatlight {
 
@@ -40,8 +43,8 @@ std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int p
   CLI::App* add = user->add_subcommand("add", "add a user, or those of a roster, and print their tokens, this once");
   CLI::Option* name = add->add_option("NAME", options.user.name, "1 to 64 of a-z, 0-9 and . _ - @");
   CLI::Option* role = add->add_option("--role", options.user.role, "what the user may do")
-                          ->default_str("student")
-                          ->check(CLI::IsMember({"student", "grader", "instructor", "admin"}));
+                          ->default_str(std::string(RoleName(Role::kStudent)))
+                          ->check(CLI::IsMember(RoleNames()));
   CLI::Option* group = add->add_option("--group", options.user.groups, "a group that the user is in; may repeat")
                            ->allow_extra_args(false);
   CLI::Option* roster = add->add_option("--roster", options.user.roster,

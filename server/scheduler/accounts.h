@@ -39,6 +39,11 @@ class Accounts {
 
   // Of a user who is not there: as if they came now.
   Rank RankOf(const std::string& user) const;
+  // Of those who wait for a place: who holds fewest of them comes first.
+  using PlaceRank = std::pair<std::size_t, Rank>;  // PlacesOf, then RankOf.
+  PlaceRank PlaceRankOf(const std::string& user, JobClass job_class) const {
+    return {PlacesOf(user, job_class), RankOf(user)};
+  }
 
  private:
   struct Account {

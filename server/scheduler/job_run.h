@@ -62,7 +62,7 @@ struct JobRun {
   JobState state;                                  // Published last. In stage kSlicing nobody but the runner writes it.
   std::unique_ptr<Rendering> rendering;            // In stage kSlicing the runner's alone.
   Stopwatch stopwatch;                             // Stands still while the job is paused.
-  Clock::Time started;                             // On the stopwatch.
+  Clock::Time started;                             // On the stopwatch: accepted, then prepared.
   Clock::Time published;
   Clock::Time entered;                          // On the stopwatch: accepted or restored.
   std::optional<Clock::Time> cancel_requested;  // On the scheduler's clock.

@@ -80,7 +80,7 @@ void Scheduler::Resubmit(const JobRecord& job, JobRun::Restore restore) {
 
 void Scheduler::Enter(const RunPtr& run, const JobState* done) {
   untold_.push_back(run->spec->id);
-  run->entered = run->stopwatch.Now();
+  run->entered = run->started = run->stopwatch.Now();
   runs_[run->spec->id] = run;
   if (run->state.phase == JobPhase::kPaused) {  // In a process before: it takes no place until it is resumed.
     run->stopwatch.Stop();
@@ -88,7 +88,6 @@ void Scheduler::Enter(const RunPtr& run, const JobState* done) {
   }
   accounts_.Enter(run->spec->owner);
   if (done == nullptr) return FollowOrWait(run);
-  run->started = run->entered;
   Adopt(*done, *run);
   End(*run, JobPhase::kSucceeded);
 }
@@ -110,12 +109,12 @@ void Scheduler::Admit() {
   const Clock::Time now = clock_.Now();
   while (accounts_.places() < options_.max_running_jobs) {
     const std::size_t free = options_.max_running_jobs - accounts_.places();
-    using Rank = std::pair<std::size_t, Accounts::Rank>;
-    const auto run = waiting_.Pop([&](const std::string& user, JobClass job_class) -> std::optional<Rank> {
-      const std::size_t places = accounts_.PlacesOf(user, job_class);
-      if (places >= free) return std::nullopt;
-      return Rank(places, accounts_.RankOf(user));
-    });
+    const auto run =
+        waiting_.Pop([&](const std::string& user, JobClass job_class) -> std::optional<Accounts::PlaceRank> {
+          const Accounts::PlaceRank rank = accounts_.PlaceRankOf(user, job_class);
+          if (rank.first >= free) return std::nullopt;
+          return rank;
+        });
     if (!run) break;
     pace_.NoteAdmission(now);
     (*run)->stage = JobRun::Stage::kPreparing;
@@ -140,9 +139,8 @@ void Scheduler::TellPlaces() {
   const auto now = std::chrono::system_clock::now();
   const std::size_t free = options_.max_running_jobs - accounts_.places();
   std::size_t ahead = 0;
-  for (const RunPtr& run : waiting_.InTurn([&](const std::string&user, JobClass job_class) {
-         return std::pair(accounts_.PlacesOf(user, job_class), accounts_.RankOf(user));
-       })) {
+  const auto rank = [&](const std::string& user, JobClass job_class) { return accounts_.PlaceRankOf(user, job_class); };
+  for (const RunPtr& run : waiting_.InTurn(rank)) {
     QueuePlace place;
     place.reason = free > 0 ? QueuePlace::Reason::kOwnJobs : QueuePlace::Reason::kServerFull;
     place.ahead = ahead++;
@@ -193,7 +191,7 @@ void Scheduler::End(JobRun& run, JobPhase phase) {
   run.state.phase = phase;
   run.state.queue.reset();
   run.state.end_time = std::chrono::system_clock::now();
-  std::vector<RunPtr> followers;
+  std::vector<RunPtr> followers;  // They end too, below.
   if (phase == JobPhase::kSucceeded) followers.swap(run.followers);
   Publish(run);
   if (options_.events != nullptr) {
@@ -270,10 +268,10 @@ absl::StatusOr<JobRecord> Scheduler::Pause(const JobId& id) {
     std::unique_lock lock(mutex_);
     const RunPtr run = Find(id);
     if (run != nullptr && run->state.phase != JobPhase::kPaused && !run->cancellation.cancelled()) {
-      if (run->stage == JobRun::Stage::kFollowing) Unfollow(*run);
       switch (run->stage) {
         case JobRun::Stage::kFollowing:
-          break;
+          Unfollow(*run);
+          [[fallthrough]];
         case JobRun::Stage::kWaiting:
           waiting_.Remove(run->Entry(), run);
           EnterPause(*run);
@@ -405,9 +403,7 @@ void Scheduler::Stop() {
       for (const RunPtr& run : runs) {
         if (!store_.durable()) {
           RequestCancel(run);
-        } else if (run->stage == JobRun::Stage::kFollowing) {
-          Suspend(*run);
-        } else if (run->stage == JobRun::Stage::kWaiting) {
+        } else if (!run->has_place()) {
           waiting_.Remove(run->Entry(), run);
           Suspend(*run);
         } else if (run->stage == JobRun::Stage::kReady && !run->cancellation.cancelled()) {

@@ -16,7 +16,6 @@ void Scheduler::FollowOrWait(const RunPtr& run) {
   run->stage = JobRun::Stage::kFollowing;
   run->leader = leader;
   leader->followers.push_back(run);
-  run->started = run->entered;
   Adopt(leader->state, *run);
   Store(*run);
 }

@@ -19,9 +19,9 @@ namespace flatlight {
 // Passed by every call of every flatlight service before anything else: who calls, and may they? (Health and reflection
 // are open.)
 //
-// - "owner", an admin, is who sends the server's own token.
+// - kServerOwner, an admin, is who sends the server's own token.
 // - Whoever sends the token of a user is that user, from the moment it is added until it is revoked.
-// - "anonymous", an admin, is everybody on this machine, while the server has no token of its own and has never had a
+// - kAnonymous, an admin, is everybody on this machine, while the server has no token of its own and has never had a
 //   user. Both names are kept from users.
 class Guard {
  public:

@@ -32,7 +32,7 @@ bool IsName(std::string_view name) {
 }
 
 absl::Status CheckName(const std::string& place, const std::string& what, const std::string& name) {
-  if (name == "anonymous" || name == "owner") {
+  if (name == kAnonymous || name == kServerOwner) {
     return MakeError(absl::StatusCode::kInvalidArgument, "USER_INVALID",
                      place + what + " \"" + name + "\" is the server's own: choose another");
   }
@@ -45,6 +45,13 @@ absl::Status CheckName(const std::string& place, const std::string& what, const 
 }  // namespace
 
 std::string_view RoleName(Role role) { return kRoles[static_cast<std::size_t>(role)].second; }
+
+std::vector<std::string> RoleNames() {
+  std::vector<std::string> names;
+  names.reserve(kRoles.size());
+  for (const auto& [role, name] : kRoles) names.emplace_back(name);
+  return names;
+}
 
 std::optional<Role> RoleOf(std::string_view name) {
   for (const auto& [role, its_name] : kRoles) {

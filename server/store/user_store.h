@@ -17,10 +17,15 @@ namespace flatlight {
 enum class Role { kStudent, kGrader, kInstructor, kAdmin };
 
 std::string_view RoleName(Role role);
+std::vector<std::string> RoleNames();  // In that order.
 std::optional<Role> RoleOf(std::string_view name);
 
+// Callers that are no users: everybody, where nobody needs a token; who has the server's own token.
+inline constexpr std::string_view kAnonymous = "anonymous";
+inline constexpr std::string_view kServerOwner = "owner";
+
 struct User {
-  std::string name;  // 1 to 64 of a-z, 0-9 and . _ - @, the first a letter or digit; not anonymous, owner.
+  std::string name;  // 1 to 64 of a-z, 0-9 and . _ - @, the first a letter or digit; not kAnonymous, not kServerOwner.
   Role role = Role::kStudent;
   std::vector<std::string> groups;  // Named as users are; sorted, each once.
   bool revoked = false;             // Has no token.

@@ -27,8 +27,8 @@ using Render = v1::RenderService::Stub;
 
 constexpr int kOthers = 200;
 constexpr int kPictures = 60;
-constexpr int kUsers = 50;
-constexpr std::chrono::seconds kUsersTime{20};
+constexpr int kCallers = 50;
+constexpr std::chrono::seconds kCallersTime{20};
 constexpr int kCancels = 100;
 constexpr int kWatchers = 1000;
 constexpr std::chrono::seconds kSilence{60};
@@ -124,16 +124,16 @@ void MeasureFirstPictures(const std::string& program, BenchTable& table) {
   }
 }
 
-void MeasureUsers(const std::string& program, BenchTable& table) {
+void MeasureCallers(const std::string& program, BenchTable& table) {
   const TemporaryFolder folder;
   BenchDaemon daemon(program, folder.path(), {"--data", folder.path() + "/data"});
   std::mutex mutex;
   std::vector<double> ms;
-  const Clock::time_point end = Clock::now() + kUsersTime;
-  std::vector<std::thread> users;
-  for (int user = 0; user < kUsers; ++user) {
-    users.emplace_back([&, user] {
-      std::mt19937 random(static_cast<std::uint32_t>(user));
+  const Clock::time_point end = Clock::now() + kCallersTime;
+  std::vector<std::thread> callers;
+  for (int caller = 0; caller < kCallers; ++caller) {
+    callers.emplace_back([&, caller] {
+      std::mt19937 random(static_cast<std::uint32_t>(caller));
       const auto render = v1::RenderService::NewStub(daemon.Connect());
       while (Clock::now() < end) {
         std::this_thread::sleep_for(milliseconds(random() % 2000));
@@ -143,8 +143,8 @@ void MeasureUsers(const std::string& program, BenchTable& table) {
       }
     });
   }
-  for (std::thread& user : users) user.join();
-  AddLatencies(table, "first picture, " + std::to_string(kUsers) + " users, 1 s apart", ms, 0.95, 250);
+  for (std::thread& caller : callers) caller.join();
+  AddLatencies(table, "first picture, " + std::to_string(kCallers) + " callers, 1 s apart", ms, 0.95, 250);
 }
 
 enum class Way : std::uint8_t { kCall, kDisconnect, kDeadline };
@@ -267,7 +267,7 @@ void MeasureShare(const std::string& program, BenchTable& table) {
 int Run(const std::string& program, const std::string& csv) {
   BenchTable table({"what", "cases", "median", "p95", "p99", "most", "unit", "goal", ""});
   MeasureFirstPictures(program, table);
-  MeasureUsers(program, table);
+  MeasureCallers(program, table);
   MeasureCancels(program, table);
   MeasureWatchers(program, table);
   MeasureShare(program, table);

@@ -3,7 +3,7 @@
 //
 //   soak [SECONDS [CSV]]      default: 600 s, the samples go to out/soak.csv
 //
-// A flatlightd with a folder; users who submit, watch, leave, cancel, fetch and delete, each with at most kKept jobs.
+// A flatlightd with a folder; callers who submit, watch, leave, cancel, fetch and delete, each with at most kKept jobs.
 // A line through the memory of the later two thirds tells how fast it grows; the program fails if that is more than
 // kMostGrowth of the memory in an hour, beyond twice the line's own uncertainty.
 #include <atomic>
@@ -26,7 +26,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Render = v1::RenderService::Stub;
 
-constexpr int kUsers = 8;
+constexpr int kCallers = 8;
 constexpr std::size_t kKept = 10;
 constexpr double kMostGrowth = 0.1;
 
@@ -51,9 +51,9 @@ struct Counts {
   std::atomic<long> jobs = 0, refused = 0, failed = 0;
 };
 
-class User {
+class Caller {
  public:
-  User(BenchDaemon& daemon, const std::vector<v1::CreateJobRequest>& requests, std::uint32_t seed, Counts& counts)
+  Caller(BenchDaemon& daemon, const std::vector<v1::CreateJobRequest>& requests, std::uint32_t seed, Counts& counts)
       : render_(v1::RenderService::NewStub(daemon.Connect())), requests_(requests), random_(seed), counts_(counts) {}
 
   void Work(Clock::time_point end) {
@@ -175,9 +175,9 @@ int Run(const std::string& program, double seconds, const std::string& csv) {
   Counts counts;
   const Clock::time_point start = Clock::now();
   const Clock::time_point end = start + std::chrono::milliseconds(static_cast<long>(1000 * seconds));
-  std::vector<std::thread> users;
-  for (std::uint32_t seed = 0; seed < kUsers; ++seed) {
-    users.emplace_back([&, seed] { User(daemon, requests, seed, counts).Work(end); });
+  std::vector<std::thread> callers;
+  for (std::uint32_t seed = 0; seed < kCallers; ++seed) {
+    callers.emplace_back([&, seed] { Caller(daemon, requests, seed, counts).Work(end); });
   }
   BenchTable table({"seconds", "MiB", "jobs"});
   std::vector<double> hours, bytes;
@@ -193,7 +193,7 @@ int Run(const std::string& program, double seconds, const std::string& csv) {
     hours.push_back(at / 3600);
     bytes.push_back(activity.resident_bytes());
   }
-  for (std::thread& user : users) user.join();
+  for (std::thread& caller : callers) caller.join();
   const Line line = Fit(hours, bytes);
   const double growth = line.slope / line.mean, uncertainty = line.error / line.mean;
   const bool flat = growth - 2 * uncertainty <= kMostGrowth;

@@ -104,10 +104,11 @@ CommandResult Watch(const CommandLine& line, Interruption& interruption) {
   };
   const auto job = WatchJob(connection, *name, options);
   console.EndProgress();
-  if (!job.ok() && interruption.Requested() && line.cancel_on_disconnect)
-    return InterruptedError("stopped watching; " + *name + " is cancelled");
-  if (!job.ok() && interruption.Requested())
-    return InterruptedError("stopped watching; the job goes on (flatlight cancel " + *name + " stops it)");
+  if (!job.ok() && interruption.Requested()) {
+    return InterruptedError("stopped watching; " + (line.cancel_on_disconnect
+                                                        ? *name + " is cancelled"
+                                                        : "the job goes on (flatlight cancel " + *name + " stops it)"));
+  }
   if (!job.ok()) return job.status();
   if (line.json)
     if (absl::Status printed = PrintBytes(ToJson(*job)); !printed.ok()) return printed;

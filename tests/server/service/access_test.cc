@@ -88,11 +88,17 @@ class AccessTest : public ::testing::Test {
     EXPECT_TRUE(status.ok()) << status.error_message();
     return job;
   }
-  grpc::Status Get(const std::string& user, const std::string& name) {
-    v1::GetJobRequest request;
+  // A call about the job `name`.
+  template <class Request, class Response>
+  grpc::Status CallOn(const std::string& user, const std::string& name,
+                      grpc::Status (v1::RenderService::Stub::*rpc)(grpc::ClientContext*, const Request&, Response*)) {
+    Request request;
     request.set_name(name);
-    v1::Job job;
-    return Call(user, request, job, &v1::RenderService::Stub::GetJob);
+    Response response;
+    return Call(user, request, response, rpc);
+  }
+  grpc::Status Get(const std::string& user, const std::string& name) {
+    return CallOn(user, name, &v1::RenderService::Stub::GetJob);
   }
   std::vector<std::string> List(const std::string& user) {
     v1::ListJobsResponse response;
@@ -102,28 +108,16 @@ class AccessTest : public ::testing::Test {
     return names;
   }
   grpc::Status Delete(const std::string& user, const std::string& name) {
-    v1::DeleteJobRequest request;
-    request.set_name(name);
-    v1::DeleteJobResponse response;
-    return Call(user, request, response, &v1::RenderService::Stub::DeleteJob);
+    return CallOn(user, name, &v1::RenderService::Stub::DeleteJob);
   }
   grpc::Status Cancel(const std::string& user, const std::string& name) {
-    v1::CancelJobRequest request;
-    request.set_name(name);
-    v1::Job job;
-    return Call(user, request, job, &v1::RenderService::Stub::CancelJob);
+    return CallOn(user, name, &v1::RenderService::Stub::CancelJob);
   }
   grpc::Status Pause(const std::string& user, const std::string& name) {
-    v1::PauseJobRequest request;
-    request.set_name(name);
-    v1::Job job;
-    return Call(user, request, job, &v1::RenderService::Stub::PauseJob);
+    return CallOn(user, name, &v1::RenderService::Stub::PauseJob);
   }
   grpc::Status Resume(const std::string& user, const std::string& name) {
-    v1::ResumeJobRequest request;
-    request.set_name(name);
-    v1::Job job;
-    return Call(user, request, job, &v1::RenderService::Stub::ResumeJob);
+    return CallOn(user, name, &v1::RenderService::Stub::ResumeJob);
   }
   // To its end.
   grpc::Status Watch(const std::string& user, const std::string& name, bool cancel_on_disconnect = false) {

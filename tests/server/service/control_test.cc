@@ -39,6 +39,20 @@ class ControlTest : public ::testing::Test {
     return request;
   }
 
+  // As it ended.
+  static v1::Job WatchToTheEnd(LoopbackServer& server, const std::string& name) {
+    v1::WatchJobRequest request;
+    request.set_name(name);
+    TestContext watching;
+    const auto reader = server.render().WatchJob(&watching, request);
+    v1::Job job;
+    for (v1::WatchJobResponse message; reader->Read(&message);) {
+      if (message.has_job()) job = message.job();
+    }
+    EXPECT_TRUE(reader->Finish().ok());
+    return job;
+  }
+
   FakeRenderings renderings_{1000};
 };
 
@@ -63,14 +77,7 @@ TEST_F(ControlTest, AJobRestsAndGoesOn) {
   resume.set_name(job.name());
   TestContext resuming;
   EXPECT_TRUE(server.render().ResumeJob(&resuming, resume, &job).ok());
-  v1::WatchJobRequest request;
-  request.set_name(job.name());
-  TestContext watching;
-  const auto reader = server.render().WatchJob(&watching, request);
-  v1::WatchJobResponse last;
-  for (v1::WatchJobResponse message; reader->Read(&message);) last = message;
-  EXPECT_TRUE(reader->Finish().ok());
-  EXPECT_EQ(last.job().state(), v1::Job::SUCCEEDED);
+  EXPECT_EQ(WatchToTheEnd(server, job.name()).state(), v1::Job::SUCCEEDED);
   TestContext again;
   const grpc::Status status = server.render().PauseJob(&again, pause, &job);
   EXPECT_EQ(status.error_code(), FAILED_PRECONDITION);
@@ -129,14 +136,7 @@ TEST_F(ControlTest, EqualWorkIsSharedUnlessItIsToBeDoneAnew) {
     v1::Job job;
     TestContext creating;
     EXPECT_TRUE(server.render().CreateJob(&creating, request, &job).ok());
-    v1::WatchJobRequest watch;
-    watch.set_name(job.name());
-    TestContext watching;
-    const auto reader = server.render().WatchJob(&watching, watch);
-    for (v1::WatchJobResponse message; reader->Read(&message);) {
-      if (message.has_job()) job = message.job();
-    }
-    EXPECT_TRUE(reader->Finish().ok());
+    job = WatchToTheEnd(server, job.name());
     EXPECT_EQ(job.state(), v1::Job::SUCCEEDED);
     return job.shared_work();
   };

@@ -96,6 +96,13 @@ class DurableTest : public ::testing::Test {
     EXPECT_TRUE(status.ok()) << status.error_message();
     return watched;
   }
+  // The result of a server that was never interrupted.
+  std::string RenderWithoutAFolder(std::uint32_t samples) {
+    server_ = std::make_unique<LoopbackServer>();
+    const std::string name = Create(Request(samples)).name();
+    Watch(name);
+    return FetchBytes(name);
+  }
   std::string FetchBytes(const std::string& name) {
     TestContext context;
     v1::GetResultRequest request;
@@ -164,11 +171,8 @@ TEST_F(DurableTest, AFailedJobKeepsItsError) {
 }
 
 TEST_F(DurableTest, AJobGoesOnFromWhereItWas) {
-  server_ = std::make_unique<LoopbackServer>();  // Without a folder.
   constexpr std::uint32_t kSamples = 40'000;
-  const std::string whole_name = Create(Request(kSamples)).name();
-  Watch(whole_name);
-  const std::string whole = FetchBytes(whole_name);
+  const std::string whole = RenderWithoutAFolder(kSamples);
   Restart(Options());
   const std::string name = Create(Request(kSamples)).name();
   double fraction = 0;
@@ -192,11 +196,8 @@ TEST_F(DurableTest, AJobGoesOnFromWhereItWas) {
 }
 
 TEST_F(DurableTest, APausedJobRestsAcrossRestartsAndGoesOnWithTheSameBits) {
-  server_ = std::make_unique<LoopbackServer>();  // Without a folder.
   constexpr std::uint32_t kSamples = 20'000;
-  const std::string whole_name = Create(Request(kSamples)).name();
-  Watch(whole_name);
-  const std::string whole = FetchBytes(whole_name);
+  const std::string whole = RenderWithoutAFolder(kSamples);
   ServerOptions options = Options();
   options.limits.max_running_jobs = 1;
   Restart(options);
