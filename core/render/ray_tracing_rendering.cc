@@ -120,7 +120,10 @@ RayTracingRendering::Gathered RayTracingRendering::Gather(std::size_t point, std
       LookPastEnds(*tree_, receiver, pass_rays_, key, cancellation, gathered, result.cast);
       result.whole = !cancellation.cancelled();
     }
-    for (const GatheredRay& ray : gathered) result.steepest = std::max(result.steepest, ray.InverseDistance());
+    // A hollow receiver is near to itself, but hides nothing there.
+    for (const GatheredRay& ray : gathered) {
+      if (ray.element != receiver.element) result.steepest = std::max(result.steepest, ray.InverseDistance());
+    }
     const GatherDerivatives derivatives = DerivativesBy(formulation, receiver, gathered);
     result.value[1] = derivatives.first;
     result.value[2] = derivatives.second;

@@ -54,6 +54,20 @@ TEST(RayTracingTest, StatedErrorsTellTheTruthInAFurnace) {
   }
 }
 
+// Rays along a hollow receiver meet it ever nearer: no reason to doubt the others.
+TEST(RayTracingTest, StatedErrorsTellTheTruthInARoundFurnace) {
+  SceneMaker maker;
+  maker.Arc("ring", {{0, 0}, 1, 0, 2 * std::numbers::pi}, {.reflectance = {0.6}, .radiance = {1}}).Probe("ring", 4);
+  const auto scene = maker.Build();
+  HonestErrors gradient;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    const ProbeField probe = Render(scene, Branching(1024, seed)).field->probes[0];
+    for (std::size_t i = 0; i < 4; ++i) gradient.Add(probe.gradient[i], 0, probe.gradient_error[i]);
+  }
+  EXPECT_TRUE(gradient.Unbiased()) << gradient.MeanZ();
+  EXPECT_TRUE(gradient.RightSize()) << gradient.MeanSquareZ();
+}
+
 TEST(RayTracingTest, AgreesWithPathTracingAmongAllMaterialsAndLights) {
   const auto scene = RoomOfAllMaterials().Build();
   const ProbeField paths = Render(scene, Sampled(16384)).field->probes[0];
