@@ -55,6 +55,7 @@ int Run(const DaemonOptions& options) {
   }
   ServerOptions server_options;
   server_options.address = options.listen;
+  server_options.tls = {options.tls_cert, options.tls_key, options.tls_client_ca};
   server_options.threads = options.threads;
   server_options.data = options.data;
   server_options.metrics_address = options.metrics;

@@ -15,8 +15,22 @@ std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int p
   options.threads = processors;
   CLI::App app("The Flatlight server: renders plane scenes and streams what it has so far.");
   app.set_version_flag("--version", "flatlightd " + version);
-  app.add_option("--listen", options.listen, "HOST:PORT on this machine (port 0: any free one), or unix:PATH")
+  app.add_option("--listen", options.listen,
+                 "HOST:PORT on this machine (port 0: any free one), or unix:PATH; with TLS 0.0.0.0 and the like too")
       ->capture_default_str();
+  CLI::Option* tls_cert = app.add_option("--tls-cert", options.tls_cert,
+                                         "speak TLS: a PEM file with the server's certificate and those between it and "
+                                         "its root; replaced files are taken while the server runs");
+  CLI::Option* tls_key = app.add_option("--tls-key", options.tls_key, "the certificate's private key, a PEM file");
+  CLI::Option* tls_client_ca =
+      app.add_option("--tls-client-ca", options.tls_client_ca,
+                     "a PEM file: callers must show a certificate that one of these has signed (mTLS)");
+  for (CLI::Option* file : {tls_cert, tls_key, tls_client_ca}) {
+    file->check([](const std::string& path) { return path.empty() ? "a file is needed" : ""; });
+  }
+  tls_cert->needs(tls_key);
+  tls_key->needs(tls_cert);
+  tls_client_ca->needs(tls_cert);
   app.add_option("--threads", options.threads, "threads for rendering")
       ->capture_default_str()
       ->check(CLI::Range(1, kMaxThreads));

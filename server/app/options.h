@@ -13,6 +13,9 @@ namespace flatlight {
 // The command line of flatlightd.
 struct DaemonOptions {
   std::string listen = "127.0.0.1:7000";
+  std::string tls_cert;  // PEM files; empty: no TLS.
+  std::string tls_key;
+  std::string tls_client_ca;  // Empty: callers need no certificate.
   int threads = 1;
   std::string token_file;          // Empty: the environment's FLATLIGHT_TOKEN, if there is one.
   std::string data;                // Empty: nothing outlives the process.

@@ -27,6 +27,11 @@ absl::StatusOr<Caller> Guard::Authorize(const grpc::ServerContextBase& context, 
   return caller;
 }
 
+absl::StatusOr<bool> Guard::KnowsEverybody() const {
+  if (!token_hash_.empty()) return true;
+  return HasUsers();
+}
+
 absl::StatusOr<bool> Guard::HasUsers() const {
   if (has_users_) return true;
   const std::lock_guard lock(mutex_);

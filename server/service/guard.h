@@ -29,6 +29,9 @@ class Guard {
   // guard alone; null: no users.
   Guard(const std::string& token, std::unique_ptr<Database> users);
 
+  // Whether nobody can be kAnonymous, now and from now on.
+  absl::StatusOr<bool> KnowsEverybody() const;
+
   // UNAUTHENTICATED with BAD_TOKEN or TOKEN_INVALID, PERMISSION_DENIED with ROLE_TOO_LOW. `request`: see PolicyRow.
   absl::StatusOr<Caller> Authorize(const grpc::ServerContextBase& context, std::string_view request) const;
 

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -23,9 +24,18 @@ absl::Status BadAddress(const std::string& message) {
   return MakeError(absl::StatusCode::kInvalidArgument, "BAD_ADDRESS", message);
 }
 
-bool IsLoopback4(const std::string& host) {
+std::optional<in_addr> Address4(const std::string& host) {
   in_addr address{};
-  return inet_pton(AF_INET, host.c_str(), &address) == 1 && (ntohl(address.s_addr) >> 24) == 127;
+  if (inet_pton(AF_INET, host.c_str(), &address) != 1) return std::nullopt;
+  return address;
+}
+
+// Of "[::1]".
+std::optional<in6_addr> Address6(const std::string& host) {
+  in6_addr address{};
+  if (host.size() < 2 || host.front() != '[' || host.back() != ']') return std::nullopt;
+  if (inet_pton(AF_INET6, host.substr(1, host.size() - 2).c_str(), &address) != 1) return std::nullopt;
+  return address;
 }
 
 sockaddr_un UnixAddress(const std::string& path) {
@@ -41,7 +51,7 @@ std::string ListenAddress::ToString(int bound_port) const {
   return path.empty() ? host + ":" + std::to_string(bound_port) : "unix:" + path;
 }
 
-absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text) {
+absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text, bool with_tls) {
   ListenAddress address;
   if (std::string_view(text).starts_with(kUnix)) {
     address.path = text.substr(kUnix.size());
@@ -61,10 +71,18 @@ absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text) {
   if (port.ec != std::errc() || port.ptr != end || address.port < 0 || address.port > 65535) return BadAddress(form);
   address.host = text.substr(0, colon);
   if (address.host == "localhost") address.host = "127.0.0.1";
-  if (!IsLoopback4(address.host) && address.host != "[::1]") {
+  const auto four = Address4(address.host);
+  const auto six = Address6(address.host);
+  address.of_this_machine = (four && (ntohl(four->s_addr) >> 24) == 127) || (six && IN6_IS_ADDR_LOOPBACK(&*six));
+  if (!address.of_this_machine && !with_tls) {
     return BadAddress("\"" + address.host +
                       "\" is not a loopback address; without TLS this server is for its own machine: 127.0.0.1, [::1], "
                       "localhost or unix:PATH");
+  }
+  if (!four && !six) {
+    return BadAddress(
+        "\"" + address.host +
+        "\" is not an address of this machine; give one in numbers, for instance 0.0.0.0 or [::] for all");
   }
   return address;
 }
@@ -83,18 +101,18 @@ std::string WhyNotListening(const ListenAddress& address) {
   if (!address.path.empty()) {
     error = try_to_bind(UnixAddress(address.path));
     if (error == 0) unlink(address.path.c_str());
-  } else if (address.host == "[::1]") {
-    sockaddr_in6 six{};
-    six.sin6_family = AF_INET6;
-    six.sin6_addr = in6addr_loopback;
-    six.sin6_port = port;
-    error = try_to_bind(six);
-  } else {
-    sockaddr_in four{};
-    four.sin_family = AF_INET;
-    inet_pton(AF_INET, address.host.c_str(), &four.sin_addr);
-    four.sin_port = port;
-    error = try_to_bind(four);
+  } else if (const auto six = Address6(address.host)) {
+    sockaddr_in6 socket_address{};
+    socket_address.sin6_family = AF_INET6;
+    socket_address.sin6_addr = *six;
+    socket_address.sin6_port = port;
+    error = try_to_bind(socket_address);
+  } else if (const auto four = Address4(address.host)) {
+    sockaddr_in socket_address{};
+    socket_address.sin_family = AF_INET;
+    socket_address.sin_addr = *four;
+    socket_address.sin_port = port;
+    error = try_to_bind(socket_address);
   }
   return error == 0 ? std::string() : std::generic_category().message(error);
 }

@@ -8,18 +8,20 @@
 
 namespace flatlight {
 
-// Where a server listens: without TLS only where no other machine can reach it.
+// Where a server listens.
 struct ListenAddress {
-  std::string host;  // "127.0.0.1", "[::1]"; empty for a Unix socket.
+  std::string host;  // "127.0.0.1", "[::1]", "0.0.0.0"; empty for a Unix socket.
   int port = 0;
-  std::string path;  // Of a Unix socket; empty otherwise.
+  std::string path;             // Of a Unix socket; empty otherwise.
+  bool of_this_machine = true;  // No other one can reach it.
 
   // In gRPC's words; `bound_port` replaces the port.
   std::string ToString(int bound_port) const;
 };
 
-// Reads HOST:PORT (a loopback host) or unix:PATH. INVALID_ARGUMENT says what is allowed.
-absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text);
+// Reads HOST:PORT or unix:PATH; a host is an address of this machine, or localhost. INVALID_ARGUMENT says what is
+// allowed, also where other machines could reach it without TLS.
+absl::StatusOr<ListenAddress> ParseListenAddress(const std::string& text, bool with_tls = false);
 
 // Why a server cannot listen there, in the system's words; empty if it can.
 std::string WhyNotListening(const ListenAddress& address);

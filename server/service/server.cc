@@ -26,6 +26,7 @@
 #include "server/service/render_service.h"
 #include "server/service/scene_cache.h"
 #include "server/service/scene_service.h"
+#include "server/service/tls_credentials.h"
 #include "server/service/watch_hub.h"
 #include "server/store/durable_job_store.h"
 #include "server/store/durable_scene_store.h"
@@ -73,6 +74,14 @@ SchedulerOptions MakeSchedulerOptions(const ServerOptions& options, Metrics& met
   scheduler.max_jobs_per_user = options.limits.max_jobs_per_user;
   scheduler.checkpoint_interval = options.checkpoint_interval;
   return scheduler;
+}
+
+absl::Status WouldLetStrangersIn(const std::string& address) {
+  return MakeError(
+      absl::StatusCode::kInvalidArgument, "NO_USERS",
+      "other machines can reach " + address +
+          ", and without users or a token everybody there could do everything; add a first user (flatlightd "
+          "user add --data DIR NAME --role admin) or give a --token-file");
 }
 
 struct Logs {
@@ -200,6 +209,10 @@ struct Server::Parts {
     if (grpc != nullptr) grpc->GetHealthCheckService()->SetServingStatus(kStorageHealth, storage_healthy);
   }
 
+  std::shared_ptr<grpc::ServerCredentials> NewCredentials() const {
+    return tls == nullptr ? grpc::InsecureServerCredentials() : tls->ForServer();
+  }
+
   Scheduler::Start StartOf(const ServerOptions& options) {
     if (options.start_rendering) return options.start_rendering;
     return [this](std::shared_ptr<const Scene> scene, const Plan& plan) {
@@ -231,7 +244,8 @@ struct Server::Parts {
   RenderService render_service;
   SceneService scene_service;
   ServerService server_service;
-  std::mutex health_mutex;  // Held while `grpc` changes.
+  std::unique_ptr<TlsCredentials> tls;  // Null: without TLS.
+  std::mutex health_mutex;              // Held while `grpc` changes.
   bool storage_healthy = true;
   std::unique_ptr<grpc::Server> grpc;
   std::string address;
@@ -257,8 +271,15 @@ absl::Status Server::ReopenLogs() {
 }
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options) {
-  const auto address = ParseListenAddress(options.address);
+  const bool with_tls = !options.tls.certificate.empty();
+  const auto address = ParseListenAddress(options.address, with_tls);
   if (!address.ok()) return address.status();
+  std::unique_ptr<TlsCredentials> tls;
+  if (with_tls) {
+    tls = std::make_unique<TlsCredentials>(
+        options.tls, [](const std::string& news) { std::fprintf(stderr, "flatlightd: %s\n", news.c_str()); });
+    if (absl::Status good = tls->Check(); !good.ok()) return good;
+  }
   const auto cannot_listen = [&](const std::string& why) {
     return MakeError(absl::StatusCode::kUnavailable, "CANNOT_LISTEN",
                      "cannot listen on " + options.address + ": " + why);
@@ -279,13 +300,19 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   Logs logs;
   if (absl::Status opened = logs.Open(options); !opened.ok()) return opened;
   auto parts = std::make_unique<Parts>(options, std::move(storage), std::move(logs), std::move(users));
+  parts->tls = std::move(tls);
+  if (!address->of_this_machine) {
+    const auto knows = parts->backend.guard.KnowsEverybody();
+    if (!knows.ok()) return knows.status();
+    if (!*knows) return WouldLetStrangersIn(options.address);
+  }
   if (absl::Status restored = parts->Restore(); !restored.ok()) return restored;
   if (absl::Status served = parts->ServeMetrics(options.metrics_address); !served.ok()) return served;
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
   int port = 0;
-  builder.AddListeningPort(address->ToString(address->port), grpc::InsecureServerCredentials(), &port);
+  builder.AddListeningPort(address->ToString(address->port), parts->NewCredentials(), &port);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   // Clients may ping an idle connection every 10 s.
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);

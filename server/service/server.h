@@ -10,14 +10,18 @@
 #include "absl/status/statusor.h"
 #include "server/scheduler/scheduler.h"
 #include "server/service/limits.h"
+#include "server/service/tls_files.h"
 
 namespace flatlight {
 
 struct ServerOptions {
-  std::string address = "127.0.0.1:0";  // A loopback address and port (0: any free one), or unix:PATH.
-  std::string token;                    // What callers must present; empty: nothing.
-  int threads = 1;                      // For rendering.
-  std::string data;                     // A folder for what is to outlive the process; empty: nothing does.
+  // An address of this machine and a port (0: any free one), or unix:PATH. One that other machines can reach wants TLS,
+  // and a token or users.
+  std::string address = "127.0.0.1:0";
+  TlsFiles tls;
+  std::string token;  // What callers must present; empty: nothing.
+  int threads = 1;    // For rendering.
+  std::string data;   // A folder for what is to outlive the process; empty: nothing does.
   Limits limits;
   std::string metrics_address;  // A loopback address and port for Prometheus; empty: none is served.
   std::string log;              // A file for a line about each call, or "-"; empty: none.
@@ -28,8 +32,8 @@ struct ServerOptions {
 
 class Server {
  public:
-  // Serves from now on. INVALID_ARGUMENT for an address that is not allowed, UNAVAILABLE, with the reason, where it
-  // cannot listen or use the folder.
+  // Serves from now on. INVALID_ARGUMENT for an address that is not allowed, TLS files that cannot be used, or with
+  // NO_USERS where strangers could come in; UNAVAILABLE, with the reason, where it cannot listen or use the folder.
   static absl::StatusOr<std::unique_ptr<Server>> Start(const ServerOptions& options);
   // As Drain without grace.
   ~Server();

@@ -31,6 +31,17 @@ absl::StatusOr<std::string> Token(const CommandLine& line) {
   return token;
 }
 
+// Each option, or its variable.
+TlsArguments TlsOf(TlsArguments tls) {
+  if (tls.ca.empty()) tls.ca = Variable("FLATLIGHT_TLS_CA");
+  if (tls.name.empty()) tls.name = Variable("FLATLIGHT_TLS_NAME");
+  if (tls.cert.empty() && tls.key.empty()) {
+    tls.cert = Variable("FLATLIGHT_TLS_CERT");
+    tls.key = Variable("FLATLIGHT_TLS_KEY");
+  }
+  return tls;
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Session>> Session::Open(const CommandLine& line, WithoutServer without,
@@ -48,6 +59,8 @@ absl::StatusOr<std::unique_ptr<Session>> Session::Open(const CommandLine& line, 
       return UsageError(
           "`flatlight " + line.command +
           "` needs a server, as jobs outlive the command: give --server HOST:PORT or set FLATLIGHT_SERVER");
+    if (line.tls.any())
+      return UsageError("--tls-… is for a server of another's: give --server, or set FLATLIGHT_SERVER");
     auto server = PrivateServer::Start(line.settings.threads());
     if (!server.ok()) return server.status();
     session->server_ = *std::move(server);
@@ -57,7 +70,9 @@ absl::StatusOr<std::unique_ptr<Session>> Session::Open(const CommandLine& line, 
   }
   const auto address = ParseServerAddress(text, source);
   if (!address.ok()) return address.status();
-  auto connection = Connection::Open(*address, *token, interruption);
+  const auto tls = session->is_private() ? Tls() : ReadTls(TlsOf(line.tls), !address->local);
+  if (!tls.ok()) return tls.status();
+  auto connection = Connection::Open(*address, *tls, *token, interruption);
   if (!connection.ok()) return session->Explain(connection.status());
   session->connection_ = *std::move(connection);
   return session;

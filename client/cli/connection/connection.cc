@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::chrono::seconds kDeadline{60};  // Of a unary call; each answers at once or after a short wait.
 
-std::shared_ptr<grpc::Channel> NewChannel(const ServerAddress& address) {
+std::shared_ptr<grpc::Channel> NewChannel(const ServerAddress& address, const Tls& tls) {
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);  // The server bounds what it sends.
   arguments.SetUserAgentPrefix("flatlight");
@@ -23,22 +23,24 @@ std::shared_ptr<grpc::Channel> NewChannel(const ServerAddress& address) {
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1000);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
   if (address.local) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
-  return grpc::CreateCustomChannel(address.target, grpc::InsecureChannelCredentials(), arguments);
+  if (!tls.on) return grpc::CreateCustomChannel(address.target, grpc::InsecureChannelCredentials(), arguments);
+  if (!tls.arguments.name.empty()) arguments.SetSslTargetNameOverride(tls.arguments.name);
+  return grpc::CreateCustomChannel(address.target, grpc::SslCredentials({tls.ca, tls.key, tls.cert}), arguments);
 }
 
 }  // namespace
 
-Connection::Connection(ServerAddress address, std::string token, Interruption& interruption)
-    : address_(std::move(address)), token_(std::move(token)), interruption_(interruption) {
-  const std::shared_ptr<grpc::Channel> channel = NewChannel(address_);
+Connection::Connection(ServerAddress address, Tls tls, std::string token, Interruption& interruption)
+    : address_(std::move(address)), tls_(std::move(tls)), token_(std::move(token)), interruption_(interruption) {
+  const std::shared_ptr<grpc::Channel> channel = NewChannel(address_, tls_);
   render_ = v1::RenderService::NewStub(channel);
   scenes_ = v1::SceneService::NewStub(channel);
   server_ = v1::ServerService::NewStub(channel);
 }
 
-absl::StatusOr<std::unique_ptr<Connection>> Connection::Open(const ServerAddress& address, const std::string& token,
-                                                             Interruption& interruption) {
-  std::unique_ptr<Connection> connection(new Connection(address, token, interruption));
+absl::StatusOr<std::unique_ptr<Connection>> Connection::Open(const ServerAddress& address, const Tls& tls,
+                                                             const std::string& token, Interruption& interruption) {
+  std::unique_ptr<Connection> connection(new Connection(address, tls, token, interruption));
   if (absl::Status status = connection->ReadCapabilities(); !status.ok()) return status;
   return connection;
 }
@@ -53,7 +55,8 @@ absl::Status Connection::Explain(const grpc::Status& status) const {
   if (status.error_code() == grpc::StatusCode::CANCELLED && interruption_.Requested())
     return InterruptedError("interrupted");
   if (status.error_code() == grpc::StatusCode::UNAVAILABLE)
-    return absl::UnavailableError("cannot reach the server at " + address_.text + ": " + status.error_message());
+    return absl::UnavailableError("cannot reach the server at " + address_.text + ": " + status.error_message() +
+                                  TlsHint(tls_, status.error_message()));
   if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED)
     return absl::UnavailableError("the server at " + address_.text + " did not answer in time");
   return ErrorFromRpc(status);
@@ -72,6 +75,16 @@ absl::Status Connection::ReadCapabilities() {
   const auto read = [this](grpc::ClientContext* context) {
     return server_->GetCapabilities(context, v1::GetCapabilitiesRequest(), &capabilities_);
   };
+  const auto read_soon = [&read](grpc::ClientContext* context) {
+    context->set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(1));
+    return read(context);
+  };
+  if (tls_.on) {
+    // A certificate that is wrong is not mended by waiting.
+    absl::Status tried = Call(read_soon, OnSignal::kCancel);
+    const bool may_pass = tried.code() == absl::StatusCode::kUnavailable && TlsHint(tls_, tried.ToString()).empty();
+    if (!may_pass) return tried;
+  }
   absl::Status status = Call(
       [&read](grpc::ClientContext* context) {
         context->set_wait_for_ready(true);
@@ -85,12 +98,7 @@ absl::Status Connection::ReadCapabilities() {
       OnSignal::kCancel);
   if (status.code() != absl::StatusCode::kUnavailable) return status;
   // A call that does not wait knows why there is no connection.
-  const absl::Status reason = Call(
-      [&read](grpc::ClientContext* context) {
-        context->set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(1));
-        return read(context);
-      },
-      OnSignal::kCancel);
+  const absl::Status reason = Call(read_soon, OnSignal::kCancel);
   return reason.code() == absl::StatusCode::kUnavailable ? reason : status;
 }
 

@@ -12,6 +12,7 @@
 #include "absl/status/statusor.h"
 #include "client/cli/connection/interruption.h"
 #include "client/cli/connection/server_address.h"
+#include "client/cli/tls/tls.h"
 #include "flatlight/v1/render_service.grpc.pb.h"
 #include "flatlight/v1/scene_service.grpc.pb.h"
 #include "flatlight/v1/server_service.grpc.pb.h"
@@ -25,8 +26,8 @@ class Connection {
 
   // Reads the server's capabilities, so an open connection is one that works. An empty token is not sent.
   // UNAVAILABLE after kPatience, with the reason.
-  static absl::StatusOr<std::unique_ptr<Connection>> Open(const ServerAddress& address, const std::string& token,
-                                                          Interruption& interruption);
+  static absl::StatusOr<std::unique_ptr<Connection>> Open(const ServerAddress& address, const Tls& tls,
+                                                          const std::string& token, Interruption& interruption);
 
   v1::RenderService::Stub& render() { return *render_; }
   v1::SceneService::Stub& scenes() { return *scenes_; }
@@ -52,11 +53,12 @@ class Connection {
   absl::Status Explain(const grpc::Status& status) const;
 
  private:
-  Connection(ServerAddress address, std::string token, Interruption& interruption);
+  Connection(ServerAddress address, Tls tls, std::string token, Interruption& interruption);
   absl::Status Call(const std::function<grpc::Status(grpc::ClientContext*)>& call, OnSignal on_signal);
   absl::Status ReadCapabilities();
 
   ServerAddress address_;
+  Tls tls_;
   std::string token_;
   Interruption& interruption_;
   std::unique_ptr<v1::RenderService::Stub> render_;

@@ -34,6 +34,17 @@ void AddServer(CLI::App& app, Raw& raw) {
   app.add_option("--server", raw.server, "HOST:PORT or unix:PATH (or FLATLIGHT_SERVER)");
   app.add_option("--token-file", raw.line.token_file, "a file whose first line is the token (or FLATLIGHT_TOKEN)")
       ->type_name("FILE");
+  const auto not_empty = [](const std::string& text) { return text.empty() ? "is empty" : ""; };
+  const auto add = [&](const std::string& name, std::string& value, const std::string& description,
+                       const std::string& type) {
+    app.add_option(name, value, description)->type_name(type)->check(not_empty);
+  };
+  TlsArguments& tls = raw.line.tls;
+  add("--tls-ca", tls.ca, "TLS: who may vouch for the server, in PEM form (or FLATLIGHT_TLS_CA; else the system's)",
+      "FILE");
+  add("--tls-cert", tls.cert, "TLS: your own certificate, if the server asks for one (or FLATLIGHT_TLS_CERT)", "FILE");
+  add("--tls-key", tls.key, "TLS: its private key (or FLATLIGHT_TLS_KEY)", "FILE");
+  add("--tls-name", tls.name, "TLS: the server's name, if its address is another (or FLATLIGHT_TLS_NAME)", "NAME");
 }
 
 void AddJson(CLI::App& app, Raw& raw, const std::string& what) {

@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/cli/options/bench_options.h"
+#include "client/cli/tls/tls.h"
 #include "flatlight/v1/render_service.pb.h"
 #include "flatlight/v1/scene.pb.h"
 #include "flatlight/v1/settings.pb.h"
@@ -20,6 +21,7 @@ struct CommandLine {
   std::string text;        // Help or version, to print.
   std::string server;      // Of --server; empty if not given.
   std::string token_file;  // Of --token-file; empty if not given.
+  TlsArguments tls;        // Of --tls-ca, --tls-cert, --tls-key and --tls-name.
   bool json = false;
   bool quiet = false;
   std::string scene;                    // SCENE as written; of `scenes`, the name of one, or empty.

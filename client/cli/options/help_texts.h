@@ -16,7 +16,8 @@ inline constexpr char kMainHelp[] = R"(Examples:
 
 Environment:
   FLATLIGHT_SERVER  the server, if there is no --server: HOST:PORT or unix:PATH
-  FLATLIGHT_TOKEN   the token that the server asks for (the connection is not encrypted: use a tunnel between machines)
+  FLATLIGHT_TOKEN   the token that the server asks for
+  FLATLIGHT_TLS_CA, _CERT, _KEY, _NAME  as --tls-ca and so on. Any of them turns TLS on; with other machines it always is.
 Without a server, render, scenes, explain, validate, figure and bench start one of their own for as long as they run.
 
 Exit status:

@@ -9,6 +9,7 @@ from flatlight import scenes
 from flatlight.errors import BadRequest, error_of
 from flatlight.job import Job
 from flatlight.settings import enum_value, settings as make_settings
+from flatlight.tls import Tls
 from flatlight.v1 import (render_service_pb2, render_service_pb2_grpc, scene_service_pb2, scene_service_pb2_grpc,
                           server_service_pb2, server_service_pb2_grpc)
 
@@ -19,14 +20,18 @@ _DEADLINE = 60  # s, of a call that is no stream.
 
 class Client:
     """A connection to a server at HOST:PORT or unix:PATH; without an address, that of FLATLIGHT_SERVER. `token`: that
-    the server asks for; without it, that of FLATLIGHT_TOKEN. Safe to share among threads."""
+    the server asks for; without it, that of FLATLIGHT_TOKEN. TLS is spoken with other machines, and wherever a
+    keyword of it is given here (or as FLATLIGHT_TLS_CA and so on): `tls_ca`, a PEM file of those who may vouch for the
+    server, else the system's; `tls_cert` and `tls_key`, PEM files of one's own certificate, where the server asks for it;
+    `tls_name`, the server's, where its address is another. Safe to share among threads."""
 
-    def __init__(self, address=None, token=None):
+    def __init__(self, address=None, token=None, *, tls_ca=None, tls_cert=None, tls_key=None, tls_name=None):
         address = address or os.environ.get("FLATLIGHT_SERVER", "")
         if not _ADDRESS.fullmatch(address):
             raise BadRequest(f"the server's address is {address!r}; must be HOST:PORT or unix:PATH, here or in FLATLIGHT_SERVER")
         token = token or os.environ.get("FLATLIGHT_TOKEN", "")
         self.address = address
+        self._tls = Tls(_LOCAL.match(address) is not None, tls_ca, tls_cert, tls_key, tls_name)
         self.metadata = [("authorization", f"Bearer {token}")] if token else []
         self.reconnect()
 
@@ -52,7 +57,7 @@ class Client:
             "grpc.use_local_subchannel_pool": 1,
             "grpc.enable_http_proxy": 0 if _LOCAL.match(self.address) else 1,
         }
-        self._channel = grpc.insecure_channel(self.address, options=list(options.items()))
+        self._channel = self._tls.channel(self.address, options)
         self.render_service = render_service_pb2_grpc.RenderServiceStub(self._channel)
         self.scene_service = scene_service_pb2_grpc.SceneServiceStub(self._channel)
         self.server_service = server_service_pb2_grpc.ServerServiceStub(self._channel)

@@ -76,7 +76,7 @@ class WatchTest : public ::testing::Test {
     builder.RegisterService(static_cast<v1::ServerService::Service*>(&service_));
     server_ = builder.BuildAndStart();
     const auto address = ParseServerAddress("127.0.0.1:" + std::to_string(port), "test");
-    auto connection = Connection::Open(*address, "", interruption_);
+    auto connection = Connection::Open(*address, Tls(), "", interruption_);
     ASSERT_TRUE(connection.ok()) << connection.status();
     connection_ = *std::move(connection);
     options_.on_update = [this](const v1::Job& job) {
