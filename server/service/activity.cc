@@ -68,8 +68,9 @@ absl::StatusOr<v1::GetActivityResponse> GetActivity(Backend& backend, const Call
   const std::uint32_t most = request.max_jobs() == 0 ? kDefaultJobs : request.max_jobs();
   for (const JobId& id : backend.scheduler.Unended(most)) {
     // It may have ended meanwhile.
-    if (const auto job = FindSeen(caller, id, backend.jobs); job.ok() && !HasEnded(job->state->phase))
-      AddJob(*job, response);
+    const auto job = backend.jobs.Get(id);
+    if (!job.ok() || HasEnded(job->state->phase) || RightByRole(caller, *job->spec) == JobRight::kNone) continue;
+    AddJob(*job, response);
   }
   return response;
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "absl/status/statusor.h"
+#include "flatlight/v1/sharing.pb.h"
 #include "grpcpp/server_context.h"
 #include "grpcpp/support/server_callback.h"
 #include "server/service/backend.h"
@@ -17,6 +18,7 @@
 #include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
 #include "server/store/error.h"
+#include "server/store/grants.h"
 
 namespace flatlight {
 
@@ -63,6 +65,20 @@ std::string ResourceOf(const Request& request, const absl::StatusOr<Response>& r
   }
 }
 
+// With whom a call shares something, or no longer shares it; empty: it does neither.
+template <class Request>
+std::string GranteeOf(const Request& request) {
+  // What is no grantee may have any length.
+  if constexpr (requires { request.share().grantee(); }) {
+    if (!Grantee::Parse(request.share().grantee())) return "";
+    return request.share().grantee() + (request.share().access() == v1::Share::CONTROL ? " control" : " read");
+  } else if constexpr (requires { request.grantee(); }) {
+    return Grantee::Parse(request.grantee()) ? request.grantee() : "";
+  } else {
+    return "";
+  }
+}
+
 // Answers a unary call with `work(caller, request)`, a StatusOr<Response>, run in `lane(request)`.
 template <class Request, class LaneOf, class Work>
 grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* context, const grpc::ByteBuffer* bytes,
@@ -78,6 +94,9 @@ grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* 
                        ticket = backend.calls.Enter()](const Request& request) {
     auto response = work(caller, request);
     if (response.ok()) *answer = ToBytes(*response);
+    if (const std::string grantee = GranteeOf(request); !grantee.empty()) {
+      backend.telemetry.NoteGrantee(*context, grantee);
+    }
     if (const std::string name = ResourceOf(request, response); !name.empty()) {
       backend.telemetry.NoteResource(*context, name);
     }

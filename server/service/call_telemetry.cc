@@ -134,6 +134,13 @@ void CallTelemetry::NoteCaller(const grpc::ServerContextBase& context, const std
   shard.notes[&context].caller = caller;
 }
 
+void CallTelemetry::NoteGrantee(const grpc::ServerContextBase& context, const std::string& grantee) {
+  if (!logs()) return;
+  Shard& shard = ShardOf(&context);
+  const std::lock_guard lock(shard.mutex);
+  shard.notes[&context].grantee = grantee;
+}
+
 void CallTelemetry::NoteResource(const grpc::ServerContextBase& context, const std::string& name) {
   if (!logs()) return;
   Shard& shard = ShardOf(&context);
@@ -166,6 +173,7 @@ void CallTelemetry::Ended(const grpc::ServerContextBase* context, const Call& ca
   line["caller"] = notes.caller;
   line["method"] = method;
   if (!notes.resource.empty()) line["resource"] = notes.resource;
+  if (!notes.grantee.empty()) line["grantee"] = notes.grantee;
   line["code"] = code;
   if (!reason.empty()) line["reason"] = reason;
   line["peer"] = call.peer;

@@ -31,6 +31,8 @@ class CallTelemetry {
 
   // Who calls, and which job or scene it is about. While the call has no answer.
   void NoteCaller(const grpc::ServerContextBase& context, const std::string& caller);
+  // Of a call that changes with whom something is shared.
+  void NoteGrantee(const grpc::ServerContextBase& context, const std::string& grantee);
   void NoteResource(const grpc::ServerContextBase& context, const std::string& name);
 
   // For the server's builder; outlived by this.
@@ -56,6 +58,7 @@ class CallTelemetry {
   struct Notes {
     std::string caller;
     std::string resource;
+    std::string grantee;
   };
   struct Shard {
     std::mutex mutex;

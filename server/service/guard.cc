@@ -44,7 +44,7 @@ absl::StatusOr<bool> Guard::HasUsers() const {
 absl::StatusOr<Caller> Guard::Authenticate(const grpc::ServerContextBase& context) const {
   const auto has_users = HasUsers();
   if (!has_users.ok()) return has_users.status();
-  if (token_hash_.empty() && !*has_users) return Caller{std::string(kAnonymous), Role::kAdmin};
+  if (token_hash_.empty() && !*has_users) return Caller{std::string(kAnonymous), Role::kAdmin, {}};
   const auto& metadata = context.client_metadata();
   const auto entry = metadata.find("authorization");
   if (entry == metadata.end()) return Refuse("this server wants the metadata authorization: Bearer TOKEN");
@@ -55,13 +55,13 @@ absl::StatusOr<Caller> Guard::Authenticate(const grpc::ServerContextBase& contex
   // Hashes of equal length, compared in constant time: how long it takes tells nothing about the token.
   const std::string hash = Sha256Of(token);
   if (!token_hash_.empty() && CRYPTO_memcmp(hash.data(), token_hash_.data(), hash.size()) == 0) {
-    return Caller{std::string(kServerOwner), Role::kAdmin};
+    return Caller{std::string(kServerOwner), Role::kAdmin, {}};
   }
   if (!*has_users) return Refuse("the token is not this server's");
   const std::lock_guard lock(mutex_);
   auto user = UserStore(*users_).Authenticate(token);
   if (!user.ok()) return user.status();
-  return Caller{std::move(user->name), user->role};
+  return Caller{std::move(user->name), user->role, std::move(user->groups)};
 }
 
 }  // namespace flatlight

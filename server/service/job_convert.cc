@@ -98,6 +98,7 @@ v1::Job JobToProto(const JobSpec& spec, const JobState& state, JobView view) {
     *job.mutable_settings() = SettingsToProto(spec.settings);
     *job.mutable_plan() = PlanToProto(spec.plan);
     job.set_job_class(JobClassToProto(spec.job_class));
+    job.set_owner(spec.owner);
   }
   if (state.queue) {
     job.mutable_queue()->set_reason(ReasonToProto(state.queue->reason));
@@ -114,6 +115,32 @@ v1::Job JobToProto(const JobSpec& spec, const JobState& state, JobView view) {
   if (state.end_reason) job.set_end_reason(EndReasonToProto(*state.end_reason));
   if (!state.error.ok()) *job.mutable_error() = ToRpcStatus(state.error);
   return job;
+}
+
+absl::StatusOr<Grantee> GranteeFromProto(const std::string& path, const std::string& text) {
+  if (auto grantee = Grantee::Parse(text)) return *std::move(grantee);
+  return MakeFieldError(path, "\"" + text + "\"; allowed: user:NAME, group:NAME, course");
+}
+
+absl::StatusOr<Grant> GrantFromProto(const v1::Share& share) {
+  auto grantee = GranteeFromProto("share.grantee", share.grantee());
+  if (!grantee.ok()) return grantee.status();
+  switch (share.access()) {
+    case v1::Share::ACCESS_UNSPECIFIED:
+    case v1::Share::READ:
+      return Grant{*std::move(grantee), Access::kRead};
+    case v1::Share::CONTROL:
+      return Grant{*std::move(grantee), Access::kControl};
+    default:
+      return MakeFieldError("share.access", std::to_string(share.access()) + "; allowed: READ, CONTROL");
+  }
+}
+
+v1::Share GrantToProto(const Grant& grant) {
+  v1::Share share;
+  share.set_grantee(grant.grantee.text());
+  share.set_access(grant.access == Access::kControl ? v1::Share::CONTROL : v1::Share::READ);
+  return share;
 }
 
 absl::StatusOr<v1::RenderResult> MakeResult(const JobRecord& job, const std::string& build) {

@@ -7,6 +7,7 @@
 #include "absl/status/statusor.h"
 #include "flatlight/v1/render_service.pb.h"
 #include "flatlight/v1/result.pb.h"
+#include "server/store/grants.h"
 #include "server/store/job.h"
 
 namespace flatlight {
@@ -18,6 +19,11 @@ std::string JobKey(const JobSpec& spec, const std::string& build);
 
 // kChanging leaves out what never changes: scene, settings, plan.
 v1::Job JobToProto(const JobSpec& spec, const JobState& state, JobView view);
+
+// By their texts; INVALID_ARGUMENT, with the place `path`, of others.
+absl::StatusOr<Grantee> GranteeFromProto(const std::string& path, const std::string& text);
+absl::StatusOr<Grant> GrantFromProto(const v1::Share& share);
+v1::Share GrantToProto(const Grant& grant);
 
 // FAILED_PRECONDITION if the job has not ended, or ended without a picture.
 absl::StatusOr<v1::RenderResult> MakeResult(const JobRecord& job, const std::string& build);

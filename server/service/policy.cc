@@ -2,6 +2,7 @@
 #include "server/service/policy.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "server/store/error.h"
 
@@ -16,7 +17,7 @@ absl::Status Denied(const std::string& reason, const std::string& message) {
 
 const std::vector<PolicyRow>& Policy() {
   static const std::vector<PolicyRow> kPolicy = {
-      // Whose the job is decides the rest: FindSeen, CheckControl.
+      // Whose the job is decides the rest: FindSeen, CheckRight.
       {"CreateJobRequest", Role::kStudent},
       {"GetJobRequest", Role::kStudent},
       {"ListJobsRequest", Role::kStudent},
@@ -26,6 +27,8 @@ const std::vector<PolicyRow>& Policy() {
       {"PauseJobRequest", Role::kStudent},
       {"ResumeJobRequest", Role::kStudent},
       {"DeleteJobRequest", Role::kStudent},
+      {"ShareJobRequest", Role::kStudent},
+      {"UnshareJobRequest", Role::kStudent},
       {"ExplainJobRequest", Role::kStudent},
       // An uploaded scene is named by the hash of its bytes: who knows the name has had the scene. Students are not
       // listed the uploads, and do not delete what another may have uploaded too.
@@ -49,25 +52,38 @@ absl::Status CheckRole(const Caller& caller, std::string_view request) {
                                     caller.name + " is a " + std::string(RoleName(caller.role)));
 }
 
-bool MaySee(const Caller& caller, const JobSpec& job) {
-  return caller.role >= Role::kGrader || job.owner == caller.name;
+JobRight RightByRole(const Caller& caller, const JobSpec& job) {
+  if (job.owner == caller.name || caller.role >= Role::kInstructor) return JobRight::kOwn;
+  return caller.role >= Role::kGrader ? JobRight::kSee : JobRight::kNone;
 }
 
-bool MayControl(const Caller& caller, const JobSpec& job) {
-  return caller.role >= Role::kInstructor || job.owner == caller.name;
+absl::StatusOr<JobRight> RightOn(const Caller& caller, const JobSpec& job, JobStore& jobs) {
+  const JobRight by_role = RightByRole(caller, job);
+  if (by_role == JobRight::kOwn) return by_role;
+  const auto grants = jobs.GrantsOf(job.id);
+  if (!grants.ok()) return grants.status();
+  const auto access = AccessOf(*grants, Grantee::Of(caller.name, caller.groups));
+  if (!access) return by_role;
+  return *access == Access::kControl ? JobRight::kControl : JobRight::kSee;
 }
 
 absl::StatusOr<JobRecord> FindSeen(const Caller& caller, const JobId& id, JobStore& jobs) {
   auto job = jobs.Get(id);
-  if (job.ok() && !MaySee(caller, *job->spec)) return NoSuchJob(id);
-  return job;
+  if (!job.ok()) return job;
+  const auto right = RightOn(caller, *job->spec, jobs);
+  if (!right.ok()) return right.status();
+  return *right == JobRight::kNone ? NoSuchJob(id) : std::move(job);
 }
 
-absl::Status CheckControl(const Caller& caller, const JobId& id, JobStore& jobs) {
+absl::Status CheckRight(const Caller& caller, JobRight right, const JobId& id, JobStore& jobs) {
   const auto job = FindSeen(caller, id, jobs);
   if (!job.ok()) return job.status();
-  if (MayControl(caller, *job->spec)) return absl::OkStatus();
-  return Denied("NOT_YOUR_JOB", id.Name() + " is not yours: you may watch it, but not change it");
+  const auto has = RightOn(caller, *job->spec, jobs);
+  if (!has.ok()) return has.status();
+  if (*has >= right) return absl::OkStatus();
+  return Denied("NOT_YOUR_JOB", id.Name() + (*has == JobRight::kControl
+                                                 ? " is not yours: you may control it, but not delete or share it"
+                                                 : " is not yours: you may watch it, but not change it"));
 }
 
 }  // namespace flatlight

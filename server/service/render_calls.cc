@@ -130,12 +130,34 @@ absl::StatusOr<Submission> MakeSubmission(Backend& backend, const v1::CreateJobR
 
 v1::Job WholeJob(const JobRecord& job) { return JobToProto(*job.spec, *job.state, JobView::kWhole); }
 
+// With its shares, which are for those who may change them.
+absl::StatusOr<v1::Job> SharedJob(Backend& backend, const Caller& caller, const JobRecord& record) {
+  v1::Job job = WholeJob(record);
+  if (RightByRole(caller, *record.spec) < JobRight::kOwn) return job;
+  const auto grants = backend.jobs.GrantsOf(record.spec->id);
+  if (!grants.ok()) return grants.status();
+  for (const Grant& grant : *grants) *job.add_shares() = GrantToProto(grant);
+  return job;
+}
+
+template <class Action>
+absl::StatusOr<v1::Job> ChangeShares(Backend& backend, const Caller& caller, const std::string& name,
+                                     const Action& action) {
+  const auto id = ParseJobName(name);
+  if (!id.ok()) return id.status();
+  if (absl::Status allowed = CheckRight(caller, JobRight::kOwn, *id, backend.jobs); !allowed.ok()) return allowed;
+  if (absl::Status changed = action(*id); !changed.ok()) return changed;
+  const auto job = backend.jobs.Get(*id);
+  if (!job.ok()) return job.status();
+  return SharedJob(backend, caller, *job);
+}
+
 template <class Action>
 absl::StatusOr<v1::Job> ControlJob(Backend& backend, const Caller& caller, const std::string& name,
                                    const Action& action) {
   const auto id = ParseJobName(name);
   if (!id.ok()) return id.status();
-  if (absl::Status allowed = CheckControl(caller, *id, backend.jobs); !allowed.ok()) return allowed;
+  if (absl::Status allowed = CheckRight(caller, JobRight::kControl, *id, backend.jobs); !allowed.ok()) return allowed;
   const absl::StatusOr<JobRecord> job = action(*id);
   if (!job.ok()) return job.status();
   return WholeJob(*job);
@@ -216,20 +238,22 @@ absl::StatusOr<v1::Job> GetJob(Backend& backend, const Caller& caller, const v1:
   if (!id.ok()) return id.status();
   const auto job = FindSeen(caller, *id, backend.jobs);
   if (!job.ok()) return job.status();
-  return WholeJob(*job);
+  return SharedJob(backend, caller, *job);
 }
 
 absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const Caller& caller,
                                               const v1::ListJobsRequest& request) {
   const auto page = ParsePage(request.page_size(), request.page_token());
   if (!page.ok()) return page.status();
-  const auto listed = backend.jobs.List(page->position, page->size);
+  const auto listed = request.shared() ? backend.jobs.ListShared(Grantee::Of(caller.name, caller.groups), caller.name,
+                                                                 page->position, page->size)
+                                       : backend.jobs.List(page->position, page->size);
   if (!listed.ok()) return listed.status();
   const JobPage& jobs = *listed;
   v1::ListJobsResponse response;
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < jobs.jobs.size(); ++i) {
-    if (!MaySee(caller, *jobs.jobs[i].spec)) continue;
+    if (!request.shared() && RightByRole(caller, *jobs.jobs[i].spec) == JobRight::kNone) continue;
     v1::Job job = WholeJob(jobs.jobs[i]);
     bytes += job.ByteSizeLong();
     if (i > 0 && bytes > kMaxPageBytes) {
@@ -258,9 +282,22 @@ absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const Caller& 
                                                 const v1::DeleteJobRequest& request) {
   const auto id = ParseJobName(request.name());
   if (!id.ok()) return id.status();
-  if (absl::Status allowed = CheckControl(caller, *id, backend.jobs); !allowed.ok()) return allowed;
+  if (absl::Status allowed = CheckRight(caller, JobRight::kOwn, *id, backend.jobs); !allowed.ok()) return allowed;
   if (absl::Status deleted = backend.scheduler.Delete(*id); !deleted.ok()) return deleted;
   return v1::DeleteJobResponse();
+}
+
+absl::StatusOr<v1::Job> ShareJob(Backend& backend, const Caller& caller, const v1::ShareJobRequest& request) {
+  const auto grant = GrantFromProto(request.share());
+  if (!grant.ok()) return grant.status();
+  return ChangeShares(backend, caller, request.name(), [&](const JobId& id) { return backend.jobs.Share(id, *grant); });
+}
+
+absl::StatusOr<v1::Job> UnshareJob(Backend& backend, const Caller& caller, const v1::UnshareJobRequest& request) {
+  const auto grantee = GranteeFromProto("grantee", request.grantee());
+  if (!grantee.ok()) return grantee.status();
+  return ChangeShares(backend, caller, request.name(),
+                      [&](const JobId& id) { return backend.jobs.Unshare(id, *grantee); });
 }
 
 absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const v1::ExplainJobRequest& request,

@@ -78,6 +78,21 @@ grpc::ServerUnaryReactor* RenderService::DeleteJob(Context* context, const Bytes
                                       });
 }
 
+grpc::ServerUnaryReactor* RenderService::ShareJob(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::ShareJobRequest>(
+      backend_, context, request, response, kQuickLane,
+      [this](const Caller& caller, const v1::ShareJobRequest& r) { return flatlight::ShareJob(backend_, caller, r); });
+}
+
+grpc::ServerUnaryReactor* RenderService::UnshareJob(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::UnshareJobRequest>(backend_, context, request, response, kQuickLane,
+                                       [this](const Caller& caller, const v1::UnshareJobRequest& r) {
+                                         auto job = flatlight::UnshareJob(backend_, caller, r);
+                                         if (job.ok()) hub_.AccessChanged(*JobId::FromName(r.name()));
+                                         return job;
+                                       });
+}
+
 grpc::ServerUnaryReactor* RenderService::ExplainJob(Context* context, const Bytes* request, Bytes* response) {
   const auto lane = [this](const v1::ExplainJobRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
   return Answer<v1::ExplainJobRequest>(backend_, context, request, response, lane,
@@ -121,10 +136,19 @@ absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context
   const auto interval = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
   std::function<void()> on_disconnect;
   if (request.cancel_on_disconnect()) {
-    if (absl::Status allowed = CheckControl(*caller, *id, backend_.jobs); !allowed.ok()) return allowed;
-    on_disconnect = [this, id = *id] { backend_.scheduler.RequestCancel(id); };
+    const auto may_cancel = [this, caller = *caller, id = *id] {
+      return CheckRight(caller, JobRight::kControl, id, backend_.jobs);
+    };
+    if (absl::Status allowed = may_cancel(); !allowed.ok()) return allowed;
+    on_disconnect = [this, id = *id, may_cancel] {
+      if (may_cancel().ok()) backend_.scheduler.RequestCancel(id);
+    };
   }
-  auto watcher = std::make_shared<Watcher>(hub_, *id, known, interval, std::move(on_disconnect));
+  std::function<absl::Status()> may_see;
+  if (RightByRole(*caller, *job->spec) == JobRight::kNone) {
+    may_see = [this, caller = *caller, id = *id] { return FindSeen(caller, id, backend_.jobs).status(); };
+  }
+  auto watcher = std::make_shared<Watcher>(hub_, *id, known, interval, std::move(on_disconnect), std::move(may_see));
   if (absl::Status added = hub_.Add(*id, watcher); !added.ok()) return added;
   if (known) ++hub_.counts().resumed;
   return watcher;

@@ -2,6 +2,8 @@
 #ifndef FLATLIGHT_SERVER_SERVICE_RENDER_SERVICE_H_
 #define FLATLIGHT_SERVER_SERVICE_RENDER_SERVICE_H_
 
+#include <memory>
+
 #include "flatlight/v1/render_service.grpc.pb.h"
 #include "server/service/backend.h"
 #include "server/service/result_cache.h"
@@ -14,7 +16,8 @@ using RawRenderUnary = v1::RenderService::WithRawCallbackMethod_CreateJob<
     v1::RenderService::WithRawCallbackMethod_GetJob<v1::RenderService::WithRawCallbackMethod_ListJobs<
         v1::RenderService::WithRawCallbackMethod_CancelJob<v1::RenderService::WithRawCallbackMethod_PauseJob<
             v1::RenderService::WithRawCallbackMethod_ResumeJob<v1::RenderService::WithRawCallbackMethod_DeleteJob<
-                v1::RenderService::WithRawCallbackMethod_ExplainJob<Base>>>>>>>>;
+                v1::RenderService::WithRawCallbackMethod_ShareJob<v1::RenderService::WithRawCallbackMethod_UnshareJob<
+                    v1::RenderService::WithRawCallbackMethod_ExplainJob<Base>>>>>>>>>>;
 using RawRenderService = RawRenderUnary<v1::RenderService::WithRawCallbackMethod_WatchJob<
     v1::RenderService::WithRawCallbackMethod_GetResult<v1::RenderService::Service>>>;
 
@@ -32,6 +35,8 @@ class RenderService final : public RawRenderService {
   grpc::ServerUnaryReactor* PauseJob(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerUnaryReactor* ResumeJob(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerUnaryReactor* DeleteJob(Context* context, const Bytes* request, Bytes* response) override;
+  grpc::ServerUnaryReactor* ShareJob(Context* context, const Bytes* request, Bytes* response) override;
+  grpc::ServerUnaryReactor* UnshareJob(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerUnaryReactor* ExplainJob(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerWriteReactor<Bytes>* WatchJob(Context* context, const Bytes* request) override;
   grpc::ServerWriteReactor<Bytes>* GetResult(Context* context, const Bytes* request) override;

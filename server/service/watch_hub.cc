@@ -44,6 +44,15 @@ void WatchHub::JobChanged(const JobId& job) {
   wake_.notify_one();
 }
 
+void WatchHub::AccessChanged(const JobId& job) {
+  const std::lock_guard lock(mutex_);
+  const auto watched = watched_.find(job);
+  if (watched == watched_.end()) return;
+  for (const auto& watcher : watched->second.watchers) watcher->NoteAccessChange();
+  changed_.insert(job);
+  wake_.notify_one();
+}
+
 void WatchHub::Drain(std::chrono::milliseconds grace) {
   std::unique_lock lock(mutex_);
   draining_ = true;

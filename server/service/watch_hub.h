@@ -56,6 +56,8 @@ class WatchHub {
   // RESOURCE_EXHAUSTED at the limit, UNAVAILABLE while draining.
   absl::Status Add(const JobId& job, const std::shared_ptr<Watcher>& watcher);
   void JobChanged(const JobId& job);
+  // Watchers to whom it was shared ask anew whether they may see the job.
+  void AccessChanged(const JobId& job);
   // Tells every watcher that the server goes down; waits until all have gone, at most `grace`.
   void Drain(std::chrono::milliseconds grace);
 

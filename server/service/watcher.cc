@@ -35,6 +35,9 @@ Watcher::Decision Watcher::Decide(Time now) {
     return DecideFinish(ToGrpcStatus(
         MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down; watch again later")));
   }
+  if (access_changed_.exchange(false) && may_see_) {
+    if (const absl::Status seen = may_see_(); !seen.ok()) return DecideFinish(ToGrpcStatus(seen));
+  }
   if (update_ != nullptr) return DecideWrite(Write::kUpdate, update_->Message(next_message_), now);
 
   const auto job = hub_.jobs().GetWhole(job_);

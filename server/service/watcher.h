@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_SERVER_SERVICE_WATCHER_H_
 #define FLATLIGHT_SERVER_SERVICE_WATCHER_H_
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -23,12 +24,21 @@ class Watcher final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public 
 
   // `known`: what the reader has already. Updates begin at least `interval` apart, except the last one.
   // `on_disconnect`, which may be empty, is called at most once: when the reader goes while the server is up.
+  // `may_see` says, at the beginning and after NoteAccessChange, with what error the watch ends; empty: with none.
   Watcher(WatchHub& hub, const JobId& job, WatchUpdate::Known known, std::chrono::nanoseconds interval,
-          std::function<void()> on_disconnect)
-      : hub_(hub), job_(job), interval_(interval), on_disconnect_(std::move(on_disconnect)), known_(known) {}
+          std::function<void()> on_disconnect, std::function<absl::Status()> may_see)
+      : hub_(hub),
+        job_(job),
+        interval_(interval),
+        on_disconnect_(std::move(on_disconnect)),
+        may_see_(std::move(may_see)),
+        known_(known) {}
 
   // Writes, finishes or waits, as the job, the reader and the clock ask for. May be called at any time.
   void Step();
+
+  // Heeded by the next step.
+  void NoteAccessChange() { access_changed_ = true; }
 
   void OnWriteDone(bool ok) override;
   void OnCancel() override;
@@ -57,6 +67,9 @@ class Watcher final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public 
   const JobId job_;
   const std::chrono::nanoseconds interval_;
   const std::function<void()> on_disconnect_;
+  const std::function<absl::Status()> may_see_;
+  // At first too: what changed before the hub knew this watcher was not noted.
+  std::atomic<bool> access_changed_ = true;
 
   std::mutex mutex_;
   WatchUpdate::Known known_ ABSL_GUARDED_BY(mutex_);

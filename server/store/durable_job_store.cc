@@ -127,7 +127,15 @@ absl::StatusOr<JobRecord> DurableJobStore::GetWhole(const JobId& id) {
 }
 
 absl::StatusOr<JobPage> DurableJobStore::List(std::optional<std::uint64_t> before, std::size_t limit) {
-  auto archived = archive_.List(before, limit);
+  return PageOf(archive_.List(before, limit));
+}
+
+absl::StatusOr<JobPage> DurableJobStore::ListShared(const std::vector<Grantee>& who, const std::string& owner,
+                                                    std::optional<std::uint64_t> before, std::size_t limit) {
+  return PageOf(archive_.ListShared(who, owner, before, limit));
+}
+
+absl::StatusOr<JobPage> DurableJobStore::PageOf(absl::StatusOr<JobArchive::Page> archived) {
   if (!archived.ok()) return archived.status();
   JobPage page;
   page.positions = std::move(archived->positions);
@@ -146,6 +154,16 @@ absl::Status DurableJobStore::Delete(const JobId& id) {
   memory_.Delete(id).IgnoreError();
   return absl::OkStatus();
 }
+
+absl::Status DurableJobStore::Share(const JobId& id, const Grant& grant) {
+  absl::Status written = archive_.Share(id, grant);
+  if (!absl::IsNotFound(written) && !absl::IsResourceExhausted(written)) NoteHealth(written);
+  return written;
+}
+
+absl::Status DurableJobStore::Unshare(const JobId& id, const Grantee& grantee) { return archive_.Unshare(id, grantee); }
+
+absl::StatusOr<std::vector<Grant>> DurableJobStore::GrantsOf(const JobId& id) { return archive_.GrantsOf(id); }
 
 absl::StatusOr<JobRecord> DurableJobStore::AwaitEnd(const JobId& id) {
   {

@@ -59,7 +59,12 @@ class DurableJobStore final : public JobStore {
   absl::StatusOr<JobRecord> Get(const JobId& id) override;
   absl::StatusOr<JobRecord> GetWhole(const JobId& id) override;
   absl::StatusOr<JobPage> List(std::optional<std::uint64_t> before, std::size_t limit) override;
+  absl::StatusOr<JobPage> ListShared(const std::vector<Grantee>& who, const std::string& owner,
+                                     std::optional<std::uint64_t> before, std::size_t limit) override;
   absl::Status Delete(const JobId& id) override;
+  absl::Status Share(const JobId& id, const Grant& grant) override;
+  absl::Status Unshare(const JobId& id, const Grantee& grantee) override;
+  absl::StatusOr<std::vector<Grant>> GrantsOf(const JobId& id) override;
   bool durable() const override { return true; }
   absl::StatusOr<JobRecord> AwaitEnd(const JobId& id) override;
   absl::StatusOr<std::shared_ptr<const std::string>> WrittenResult(const JobId& id) override;
@@ -82,6 +87,7 @@ class DurableJobStore final : public JobStore {
   bool WriteEnd(std::unique_lock<std::mutex>& lock, const JobId& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void NoteHealth(const absl::Status& written);
   void WriteCheckpoint(std::unique_lock<std::mutex>& lock) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::StatusOr<JobPage> PageOf(absl::StatusOr<JobArchive::Page> archived);
   // From the archive.
   absl::StatusOr<JobRecord> Read(const JobId& id, bool whole);
   absl::StatusOr<JobRecord> Find(const JobId& id, bool whole);

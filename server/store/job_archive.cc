@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/store/job_archive.h"
 
+#include <functional>
 #include <utility>
 
 #include "server/store/error.h"
+#include "server/store/grant_table.h"
 
 namespace flatlight {
 namespace {
@@ -66,6 +68,32 @@ absl::StatusOr<std::optional<JobId>> Find(Database& database, const RequestKey& 
   const auto id = JobId::FromName("jobs/" + request.Bytes(1));
   if (request.Bytes(0) != key.fingerprint) return RequestIdReused(key, *id);
   return id;
+}
+
+std::int64_t FirstNumber(std::optional<std::uint64_t> before) {
+  return before ? static_cast<std::int64_t>(*before) : INT64_MAX;
+}
+
+// Of a query of kColumns that gives up to one job more than `limit`.
+absl::StatusOr<JobArchive::Page> ReadPage(Storage& storage, std::size_t limit,
+                                          const std::function<Statement(Database&)>& query) {
+  JobArchive::Page page;
+  const absl::Status read = storage.Read([&](Database& database) -> absl::Status {
+    Statement jobs = query(database);
+    while (true) {
+      const auto row = jobs.Step();
+      if (!row.ok()) return row.status();
+      if (!*row) return absl::OkStatus();
+      if (page.jobs.size() == limit) {
+        page.next_before = page.positions.back();
+        return absl::OkStatus();
+      }
+      page.jobs.push_back(JobOf(jobs));
+      page.positions.push_back(static_cast<std::uint64_t>(jobs.Integer(5)));
+    }
+  });
+  if (!read.ok()) return read;
+  return page;
 }
 
 }  // namespace
@@ -223,24 +251,50 @@ absl::StatusOr<ArchivedJob> JobArchive::Get(const JobId& id) {
 }
 
 absl::StatusOr<JobArchive::Page> JobArchive::List(std::optional<std::uint64_t> before, std::size_t limit) {
-  Page page;
-  const absl::Status read = storage_.Read([&](Database& database) -> absl::Status {
+  return ReadPage(storage_, limit, [&](Database& database) {
     Statement jobs = database.Prepare(std::string(kColumns) + "WHERE number < ? ORDER BY number DESC LIMIT ?");
-    jobs.Bind(before ? static_cast<std::int64_t>(*before) : INT64_MAX).Bind(static_cast<std::int64_t>(limit) + 1);
-    while (true) {
-      const auto row = jobs.Step();
-      if (!row.ok()) return row.status();
-      if (!*row) return absl::OkStatus();
-      if (page.jobs.size() == limit) {
-        page.next_before = page.positions.back();
-        return absl::OkStatus();
-      }
-      page.jobs.push_back(JobOf(jobs));
-      page.positions.push_back(static_cast<std::uint64_t>(jobs.Integer(5)));
-    }
+    jobs.Bind(FirstNumber(before)).Bind(static_cast<std::int64_t>(limit) + 1);
+    return jobs;
   });
-  if (!read.ok()) return read;
-  return page;
+}
+
+absl::StatusOr<JobArchive::Page> JobArchive::ListShared(const std::vector<Grantee>& who, const std::string& owner,
+                                                        std::optional<std::uint64_t> before, std::size_t limit) {
+  std::string places;
+  for (std::size_t i = 0; i < who.size(); ++i) places += i == 0 ? "?" : ", ?";
+  return ReadPage(storage_, limit, [&](Database& database) {
+    Statement jobs = database.Prepare(std::string(kColumns) +
+                                      "WHERE number < ? AND owner != ? AND 'jobs/' || uuid IN "
+                                      "(SELECT resource FROM grants WHERE grantee IN (" +
+                                      places + ")) ORDER BY number DESC LIMIT ?");
+    jobs.Bind(FirstNumber(before)).Bind(std::string_view(owner));
+    for (const Grantee& grantee : who) jobs.Bind(std::string_view(grantee.text()));
+    jobs.Bind(static_cast<std::int64_t>(limit) + 1);
+    return jobs;
+  });
+}
+
+absl::Status JobArchive::Share(const JobId& id, const Grant& grant) {
+  return storage_.Write([&](Writing& writing) -> absl::Status {
+    if (const auto number = NumberOf(writing.database(), id); !number.ok()) return number.status();
+    return InsertGrant(writing.database(), id.Name(), grant);
+  });
+}
+
+absl::Status JobArchive::Unshare(const JobId& id, const Grantee& grantee) {
+  return storage_.Write([&](Writing& writing) -> absl::Status {
+    if (const auto number = NumberOf(writing.database(), id); !number.ok()) return number.status();
+    return DeleteGrant(writing.database(), id.Name(), grantee);
+  });
+}
+
+absl::StatusOr<std::vector<Grant>> JobArchive::GrantsOf(const JobId& id) {
+  absl::StatusOr<std::vector<Grant>> grants;
+  const absl::Status read = storage_.Read([&](Database& database) {
+    grants = ReadGrants(database, id.Name());
+    return grants.status();
+  });
+  return read.ok() ? grants : absl::StatusOr<std::vector<Grant>>(read);
 }
 
 absl::StatusOr<std::vector<ArchivedJob>> JobArchive::Unfinished() {

@@ -47,6 +47,9 @@ class JobArchive {
   absl::Status End(const JobId& id, std::string message, std::uint64_t sequence, std::optional<std::string> result,
                    WallTime now);
   absl::Status Delete(const JobId& id);
+  absl::Status Share(const JobId& id, const Grant& grant);
+  absl::Status Unshare(const JobId& id, const Grantee& grantee);
+  absl::StatusOr<std::vector<Grant>> GrantsOf(const JobId& id);
   // Forgets jobs that ended before, and requests made before.
   absl::Status DropEnded(WallTime before);
   absl::Status DropRequests(WallTime before);
@@ -59,6 +62,8 @@ class JobArchive {
     std::optional<std::uint64_t> next_before;
   };
   absl::StatusOr<Page> List(std::optional<std::uint64_t> before, std::size_t limit);
+  absl::StatusOr<Page> ListShared(const std::vector<Grantee>& who, const std::string& owner,
+                                  std::optional<std::uint64_t> before, std::size_t limit);
   absl::StatusOr<std::vector<ArchivedJob>> Unfinished();  // Oldest first.
 
   absl::StatusOr<std::string> Fetch(const std::string& sha256) { return storage_.Fetch(sha256); }

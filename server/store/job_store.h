@@ -13,6 +13,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "server/store/grants.h"
 #include "server/store/job.h"
 
 namespace flatlight {
@@ -60,7 +61,16 @@ class JobStore {
   virtual absl::StatusOr<JobRecord> GetWhole(const JobId& id) { return Get(id); }
   // At most `limit` jobs, from the newest one, or from the newest one older than `before`. Fields may be left out.
   virtual absl::StatusOr<JobPage> List(std::optional<std::uint64_t> before, std::size_t limit) = 0;
+  // The same, of jobs that are shared with one of `who` and are not `owner`'s.
+  virtual absl::StatusOr<JobPage> ListShared(const std::vector<Grantee>& who, const std::string& owner,
+                                             std::optional<std::uint64_t> before, std::size_t limit) = 0;
   virtual absl::Status Delete(const JobId& id) = 0;
+
+  // Who besides its owner may use a job. NOT_FOUND if there is no such job; else as AddGrant and RemoveGrant.
+  virtual absl::Status Share(const JobId& id, const Grant& grant) = 0;
+  virtual absl::Status Unshare(const JobId& id, const Grantee& grantee) = 0;
+  // None, of a job that is not there.
+  virtual absl::StatusOr<std::vector<Grant>> GrantsOf(const JobId& id) = 0;
 
   // Of a store that outlives the process. An ended state is shown once it is written, or cannot be written for now.
   virtual bool durable() const { return false; }

@@ -160,15 +160,55 @@ absl::StatusOr<JobRecord> MemoryJobStore::Get(const JobId& id) {
 
 absl::StatusOr<JobPage> MemoryJobStore::List(std::optional<std::uint64_t> before, std::size_t limit) {
   const std::lock_guard lock(mutex_);
+  return ListIf(before, limit, [](const Entry&) { return true; });
+}
+
+absl::StatusOr<JobPage> MemoryJobStore::ListShared(const std::vector<Grantee>& who, const std::string& owner,
+                                                   std::optional<std::uint64_t> before, std::size_t limit) {
+  const std::lock_guard lock(mutex_);
+  return ListIf(before, limit, [&](const Entry& entry) {
+    return entry.job.spec->owner != owner && AccessOf(entry.grants, who).has_value();
+  });
+}
+
+JobPage MemoryJobStore::ListIf(std::optional<std::uint64_t> before, std::size_t limit,
+                               const std::function<bool(const Entry&)>& wanted) {
   JobPage page;
   auto job = before ? jobs_.lower_bound(*before) : jobs_.end();
-  while (job != jobs_.begin() && page.jobs.size() < limit) {
+  while (job != jobs_.begin()) {
     --job;
+    if (!wanted(job->second)) continue;
+    if (page.jobs.size() == limit) {
+      page.next_before = page.positions.back();
+      break;
+    }
     page.jobs.push_back(job->second.job);
     page.positions.push_back(job->first);
   }
-  if (job != jobs_.begin()) page.next_before = job->first;
   return page;
+}
+
+MemoryJobStore::Entry* MemoryJobStore::Find(const JobId& id) {
+  const auto number = numbers_.find(id);
+  return number == numbers_.end() ? nullptr : &jobs_.at(number->second);
+}
+
+absl::Status MemoryJobStore::Share(const JobId& id, const Grant& grant) {
+  const std::lock_guard lock(mutex_);
+  Entry* entry = Find(id);
+  return entry == nullptr ? NoSuchJob(id) : AddGrant(id.Name(), grant, entry->grants);
+}
+
+absl::Status MemoryJobStore::Unshare(const JobId& id, const Grantee& grantee) {
+  const std::lock_guard lock(mutex_);
+  Entry* entry = Find(id);
+  return entry == nullptr ? NoSuchJob(id) : RemoveGrant(id.Name(), grantee, entry->grants);
+}
+
+absl::StatusOr<std::vector<Grant>> MemoryJobStore::GrantsOf(const JobId& id) {
+  const std::lock_guard lock(mutex_);
+  const Entry* entry = Find(id);
+  return entry == nullptr ? std::vector<Grant>() : entry->grants;
 }
 
 absl::Status MemoryJobStore::Delete(const JobId& id) {

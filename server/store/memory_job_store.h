@@ -3,11 +3,13 @@
 #define FLATLIGHT_SERVER_STORE_MEMORY_JOB_STORE_H_
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
 #include <tuple>
 #include <unordered_map>
+#include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "core/execution/clock.h"
@@ -32,7 +34,12 @@ class MemoryJobStore final : public JobStore {
   absl::Status Update(const JobRecord& job) override;
   absl::StatusOr<JobRecord> Get(const JobId& id) override;
   absl::StatusOr<JobPage> List(std::optional<std::uint64_t> before, std::size_t limit) override;
+  absl::StatusOr<JobPage> ListShared(const std::vector<Grantee>& who, const std::string& owner,
+                                     std::optional<std::uint64_t> before, std::size_t limit) override;
   absl::Status Delete(const JobId& id) override;
+  absl::Status Share(const JobId& id, const Grant& grant) override;
+  absl::Status Unshare(const JobId& id, const Grantee& grantee) override;
+  absl::StatusOr<std::vector<Grant>> GrantsOf(const JobId& id) override;
 
  private:
   struct Request {
@@ -47,7 +54,12 @@ class MemoryJobStore final : public JobStore {
     JobRecord job;
     double bytes = 0;
     std::uint64_t end = 0;  // Its place in `ended_`; 0: it has not ended.
+    std::vector<Grant> grants = {};
   };
+
+  JobPage ListIf(std::optional<std::uint64_t> before, std::size_t limit,
+                 const std::function<bool(const Entry&)>& wanted) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  Entry* Find(const JobId& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   absl::Status MakeRoom(double bytes) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Notes that a job holds only its result from now on. Drops the results that ended longest ago if there are too many.

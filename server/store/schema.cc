@@ -64,6 +64,20 @@ CREATE TABLE memberships(
 
 constexpr char kPauses[] = "ALTER TABLE jobs ADD COLUMN paused INTEGER NOT NULL DEFAULT 0;";
 
+// Who besides its owner may use something, which is named as callers name it.
+constexpr char kGrants[] = R"sql(
+CREATE TABLE grants(
+  resource TEXT NOT NULL,  -- jobs/{uuid}.
+  grantee TEXT NOT NULL,   -- user:NAME, group:NAME, course.
+  access TEXT NOT NULL CHECK(access IN ('read', 'control')),
+  PRIMARY KEY(resource, grantee)
+) WITHOUT ROWID;
+CREATE INDEX grants_by_grantee ON grants(grantee);
+CREATE TRIGGER jobs_drop_grants AFTER DELETE ON jobs BEGIN
+  DELETE FROM grants WHERE resource = 'jobs/' || OLD.uuid;
+END;
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -74,7 +88,7 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs, kScenes, kUsers, kPauses};
+  static const std::vector<std::string> kMigrations = {kJobs, kScenes, kUsers, kPauses, kGrants};
   return kMigrations;
 }
 

@@ -24,7 +24,7 @@ constexpr std::size_t kMostNameBytes = 64;
 // The beginning lets those who search for leaked secrets know one.
 std::string MakeToken() { return "flatlight_" + RandomHex(32); }
 
-bool IsName(std::string_view name) {
+bool IsWellFormed(std::string_view name) {
   const auto is_alphanumeric = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
   if (name.empty() || name.size() > kMostNameBytes || !is_alphanumeric(name.front())) return false;
   return std::all_of(name.begin(), name.end(),
@@ -36,7 +36,7 @@ absl::Status CheckName(const std::string& place, const std::string& what, const 
     return MakeError(absl::StatusCode::kInvalidArgument, "USER_INVALID",
                      place + what + " \"" + name + "\" is the server's own: choose another");
   }
-  if (IsName(name)) return absl::OkStatus();
+  if (IsWellFormed(name)) return absl::OkStatus();
   return MakeError(absl::StatusCode::kInvalidArgument, "USER_INVALID",
                    place + what + " \"" + name.substr(0, kMostNameBytes) +
                        "\" must be 1 to 64 of a-z, 0-9 and . _ - @, and begin with a letter or digit");
@@ -52,6 +52,8 @@ std::vector<std::string> RoleNames() {
   for (const auto& [role, name] : kRoles) names.emplace_back(name);
   return names;
 }
+
+bool IsUserName(std::string_view name) { return IsWellFormed(name) && name != kAnonymous && name != kServerOwner; }
 
 std::optional<Role> RoleOf(std::string_view name) {
   for (const auto& [role, its_name] : kRoles) {

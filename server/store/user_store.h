@@ -31,6 +31,9 @@ struct User {
   bool revoked = false;             // Has no token.
 };
 
+// Whether a user, or a group, may be named so.
+bool IsUserName(std::string_view name);
+
 // The users of a server and the hashes of their tokens. A token is 256 random bits, shown once, to whoever makes it.
 // Several processes may each have one of these on the same file; like its database, for one thread at a time.
 class UserStore {

@@ -18,6 +18,8 @@ CommandResult RunCommand(const CommandLine& line, Interruption& interruption) {
       {"cancel", Cancel},
       {"pause", Pause},
       {"resume", Resume},
+      {"share", Share},
+      {"unshare", Unshare},
       {"scenes", Scenes},
       {"explain", Explain},
       {"validate", Validate},

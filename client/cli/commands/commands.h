@@ -30,6 +30,10 @@ CommandResult Cancel(const CommandLine& line, Interruption& interruption);
 CommandResult Pause(const CommandLine& line, Interruption& interruption);
 CommandResult Resume(const CommandLine& line, Interruption& interruption);
 
+// share_command.cc
+CommandResult Share(const CommandLine& line, Interruption& interruption);
+CommandResult Unshare(const CommandLine& line, Interruption& interruption);
+
 // top_command.cc
 CommandResult Top(const CommandLine& line, Interruption& interruption);
 

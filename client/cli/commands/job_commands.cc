@@ -122,7 +122,7 @@ CommandResult Watch(const CommandLine& line, Interruption& interruption) {
 CommandResult Jobs(const CommandLine& line, Interruption& interruption) {
   const auto session = OpenServer(line, interruption);
   if (!session.ok()) return session.status();
-  auto jobs = ListJobs((*session)->connection());
+  auto jobs = ListJobs((*session)->connection(), line.shared ? WhoseJobs::kShared : WhoseJobs::kOwn);
   if (!jobs.ok()) return jobs.status();
   if (line.prune_seconds) {
     absl::Status pruned = Prune((*session)->connection(), *line.prune_seconds, *jobs);
@@ -133,7 +133,7 @@ CommandResult Jobs(const CommandLine& line, Interruption& interruption) {
     all.mutable_jobs()->Add(jobs->begin(), jobs->end());
     return Answer(ToJson(all));
   }
-  return Answer(JobListText(*jobs, SecondsNow()));
+  return Answer(JobListText(*jobs, SecondsNow(), line.shared ? WhoseJobs::kShared : WhoseJobs::kOwn));
 }
 
 CommandResult Show(const CommandLine& line, Interruption& interruption) {

@@ -16,25 +16,40 @@ namespace {
 
 using google::protobuf::util::TimeUtil;
 
+constexpr char kAnonymous[] = "anonymous";  // Everybody, at a server without users.
+
 std::string Uuid(const v1::Job& job) { return job.name().substr(job.name().find('/') + 1); }
 
 }  // namespace
 
-std::string JobListText(const std::vector<v1::Job>& jobs, double now) {
-  if (jobs.empty()) return "no jobs\n";
+std::string JobListText(const std::vector<v1::Job>& jobs, double now, WhoseJobs whose) {
+  const bool shared = whose == WhoseJobs::kShared;
+  if (jobs.empty()) return shared ? "no jobs are shared with you\n" : "no jobs\n";
   std::vector<std::vector<std::string>> rows = {{"JOB", "STATE", "DONE", "METHOD", "AGE", "SCENE"}};
-  for (const v1::Job& job : jobs)
+  if (shared) rows.front().insert(rows.front().begin() + 1, "OWNER");
+  for (const v1::Job& job : jobs) {
     rows.push_back({Uuid(job), OptionName(job.state()),
                     std::to_string(static_cast<int>(100 * job.progress().fraction())) + " %",
                     OptionName(job.plan().settings().method()),
                     FormatSeconds(std::max(0.0, now - SecondsOf(job.create_time()))), Printable(job.scene())});
+    if (shared) rows.back().insert(rows.back().begin() + 1, Printable(job.owner()));
+  }
   return FormatTable(rows);
+}
+
+std::string SharesText(const v1::Job& job) {
+  std::string text;
+  for (const v1::Share& share : job.shares())
+    text += (text.empty() ? "" : ", ") + Printable(share.grantee()) + " (" + OptionName(share.access()) + ")";
+  return text.empty() ? "nobody" : text;
 }
 
 std::string JobText(const v1::Job& job) {
   std::vector<std::vector<std::string>> rows = {{"job", job.name()}, {"scene", Printable(job.scene())}};
   const std::string end = job.end_reason() == 0 ? "" : ", " + OptionName(job.end_reason());
   rows.push_back({"state", OptionName(job.state()) + end});
+  if (!job.owner().empty() && job.owner() != kAnonymous) rows.push_back({"owner", Printable(job.owner())});
+  if (!job.shares().empty()) rows.push_back({"shared", SharesText(job)});
   if (job.has_error()) rows.push_back({"error", Printable(job.error().message())});
   rows.push_back({"progress", ProgressLine(job, 0)});
   if (job.progress().samples() > 0)

@@ -5,15 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "client/cli/jobs/job_name.h"
 #include "flatlight/v1/render_service.pb.h"
 
 namespace flatlight {
 
 // A line a job under a heading. `now` in seconds since 1970.
-std::string JobListText(const std::vector<v1::Job>& jobs, double now);
+std::string JobListText(const std::vector<v1::Job>& jobs, double now, WhoseJobs whose);
 
 // All about a job.
 std::string JobText(const v1::Job& job);
+// "group:lab-1 (read), user:ada (control)", or "nobody".
+std::string SharesText(const v1::Job& job);
 
 }  // namespace flatlight
 

@@ -69,6 +69,28 @@ absl::StatusOr<v1::Job> ResumeJob(Connection& connection, const std::string& nam
   return ControlJob<v1::ResumeJobRequest>(connection, &v1::RenderService::Stub::ResumeJob, name);
 }
 
+absl::StatusOr<v1::Job> ShareJob(Connection& connection, const std::string& name, const std::string& grantee,
+                                 v1::Share::Access access) {
+  v1::ShareJobRequest request;
+  request.set_name(name);
+  request.mutable_share()->set_grantee(grantee);
+  request.mutable_share()->set_access(access);
+  v1::Job job;
+  const absl::Status status = connection.Call(connection.render(), &v1::RenderService::Stub::ShareJob, request, job);
+  if (!status.ok()) return status;
+  return job;
+}
+
+absl::StatusOr<v1::Job> UnshareJob(Connection& connection, const std::string& name, const std::string& grantee) {
+  v1::UnshareJobRequest request;
+  request.set_name(name);
+  request.set_grantee(grantee);
+  v1::Job job;
+  const absl::Status status = connection.Call(connection.render(), &v1::RenderService::Stub::UnshareJob, request, job);
+  if (!status.ok()) return status;
+  return job;
+}
+
 absl::Status DeleteJob(Connection& connection, const std::string& name) {
   v1::DeleteJobRequest request;
   request.set_name(name);

@@ -28,6 +28,12 @@ absl::StatusOr<v1::Job> CancelJob(Connection& connection, const std::string& nam
 absl::StatusOr<v1::Job> PauseJob(Connection& connection, const std::string& name);
 absl::StatusOr<v1::Job> ResumeJob(Connection& connection, const std::string& name);
 
+// Lets `grantee` ("user:ada", "group:lab-1", "course") use the job, or no longer. The job that is returned has its
+// shares.
+absl::StatusOr<v1::Job> ShareJob(Connection& connection, const std::string& name, const std::string& grantee,
+                                 v1::Share::Access access);
+absl::StatusOr<v1::Job> UnshareJob(Connection& connection, const std::string& name, const std::string& grantee);
+
 // Of an ended job: the server need not keep it.
 absl::Status DeleteJob(Connection& connection, const std::string& name);
 

@@ -4,6 +4,7 @@
 #include <sys/random.h>
 
 #include <array>
+#include <set>
 
 #include "absl/strings/escaping.h"
 #include "client/cli/status/exit_code.h"
@@ -60,10 +61,11 @@ absl::StatusOr<std::string> MatchJobName(const std::string& text, const std::vec
   return UsageError(message + (matches.size() > 5 ? " ..." : ""));
 }
 
-absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection) {
+absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection, WhoseJobs whose) {
   std::vector<v1::Job> jobs;
   v1::ListJobsRequest request;
   request.set_page_size(1000);
+  request.set_shared(whose == WhoseJobs::kShared);
   do {
     v1::ListJobsResponse response;
     const absl::Status status =
@@ -76,13 +78,15 @@ absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection) {
 }
 
 absl::StatusOr<std::string> ResolveJobName(Connection& connection, const std::string& text) {
-  std::vector<std::string> names;
+  std::set<std::string> names;
   if (!IsWholeJobName(text) && IsUuidBeginning(WithoutPrefix(text))) {
-    const auto jobs = ListJobs(connection);
-    if (!jobs.ok()) return jobs.status();
-    for (const v1::Job& job : *jobs) names.push_back(job.name());
+    for (const WhoseJobs whose : {WhoseJobs::kOwn, WhoseJobs::kShared}) {
+      const auto jobs = ListJobs(connection, whose);
+      if (!jobs.ok()) return jobs.status();
+      for (const v1::Job& job : *jobs) names.insert(job.name());
+    }
   }
-  return MatchJobName(text, names);
+  return MatchJobName(text, {names.begin(), names.end()});
 }
 
 }  // namespace flatlight

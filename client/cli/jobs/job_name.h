@@ -20,10 +20,14 @@ absl::StatusOr<std::string> MatchJobName(const std::string& text, const std::vec
 // Whether `text` is a whole name, so that nobody needs to be asked.
 bool IsWholeJobName(const std::string& text);
 
-// Every job that the server keeps, newest first.
-absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection);
+enum class WhoseJobs {
+  kOwn,    // Those of all, for graders and above.
+  kShared  // Those of others that are shared with the caller.
+};
+// Every one that the server keeps, newest first.
+absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection, WhoseJobs whose = WhoseJobs::kOwn);
 
-// MatchJobName with the server's jobs, which are listed only if they are needed.
+// MatchJobName with the jobs that the caller may see, which are listed only if they are needed.
 absl::StatusOr<std::string> ResolveJobName(Connection& connection, const std::string& text);
 
 }  // namespace flatlight

@@ -202,6 +202,22 @@ void AddSceneCommands(CLI::App& app, Raw& raw) {
   AddServer(scenes, raw);
 }
 
+void AddSharing(CLI::App& app, Raw& raw) {
+  for (const auto& [name, what] : {std::pair("share", "let others see a job"), std::pair("unshare", "end that")}) {
+    const bool share = std::string(name) == "share";
+    CLI::App& command = AddCommand(app, name, what, share ? kShareHelp : kJobHelp);
+    AddJob(command, raw);
+    command.add_option("--with", raw.line.grantees, "user:NAME, group:NAME or course (everybody); may be repeated")
+        ->required()
+        ->type_name("WHOM")
+        ->allow_extra_args(false);
+    if (share) command.add_flag("--control", raw.line.control, "they may also cancel, pause and resume it");
+    AddJson(command, raw, "the job");
+    AddQuiet(command, raw);
+    AddServer(command, raw);
+  }
+}
+
 void AddJobCommands(CLI::App& app, Raw& raw) {
   CLI::App& watch = AddCommand(app, "watch", "follow a job until it has ended", kWatchHelp);
   AddJob(watch, raw);
@@ -211,8 +227,10 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   AddQuiet(watch, raw);
   CLI::App& jobs = AddCommand(app, "jobs", "list the jobs of a server");
   AddJson(jobs, raw, "the list");
-  jobs.add_option("--prune", raw.prune, "delete the jobs that ended longer than AGE ago: 0, 90m, 12h, 30d")
-      ->type_name("AGE");
+  CLI::Option& prune =
+      *jobs.add_option("--prune", raw.prune, "delete the jobs that ended longer than AGE ago: 0, 90m, 12h, 30d");
+  prune.type_name("AGE");
+  jobs.add_flag("--shared", raw.line.shared, "those of others that are shared with you")->excludes(&prune);
   CLI::App& top = AddCommand(app, "top", "show what a server does: jobs, users, rates", kTopHelp);
   top.add_flag("--once", raw.line.once, "show it once, in plain text");
   AddJson(top, raw, "the activity");
@@ -234,6 +252,7 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
     AddServer(control, raw);
   }
   for (CLI::App* command : {&watch, &jobs, &top, &show, &fetch}) AddServer(*command, raw);
+  AddSharing(app, raw);
 }
 
 void AddCompare(CLI::App& app, Raw& raw) {

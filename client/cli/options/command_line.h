@@ -30,6 +30,9 @@ struct CommandLine {
   bool records = false;                 // Of `watch`: print them as they are made.
   bool once = false;                    // Of `top`.
   std::optional<double> prune_seconds;  // Of `jobs`: delete those that ended longer ago.
+  bool shared = false;                  // Of `jobs`: those of others that are shared with the caller.
+  std::vector<std::string> grantees;    // Of `share` and `unshare`.
+  bool control = false;                 // Of `share`.
   std::string figure;                   // Of `figure`: its name.
   v1::Settings settings;
   v1::JobClass job_class = v1::INTERACTIVE;  // Of `submit`.

@@ -81,6 +81,15 @@ Examples:
   flatlight figure derivatives-occluded -o figure.svg -o figure.csv
   flatlight figure convergence -o convergence.svg)";
 
+inline constexpr char kShareHelp[] =
+    R"(JOB is jobs/UUID, the UUID, or the beginning of one that only one of the server's jobs has. With whom it is shared, and
+what they may do, is printed. `flatlight jobs --shared` lists what others share with you.
+
+Examples:
+  flatlight share 3f2a --with user:ada
+  flatlight share 3f2a --with group:lab-1 --with user:bob --control
+  flatlight unshare 3f2a --with group:lab-1)";
+
 inline constexpr char kCompareHelp[] =
     R"(A and B are results in JSON form with the same probes at the same points; B is the reference. Printed for irradiance and, if
 both have them, derivatives of each probe:

@@ -5,6 +5,7 @@ from flatlight.errors import JobFailed, error_of
 from flatlight.progress import Display
 from flatlight.result import Result
 from flatlight.v1 import render_service_pb2 as api, result_pb2
+from flatlight.v1.sharing_pb2 import Share
 from flatlight.watch import ENDED, Watch
 
 
@@ -32,6 +33,16 @@ class Job:
     def progress(self):
         """flatlight.v1.Progress: fraction, relative_error, rays, ..."""
         return self.message.progress
+
+    @property
+    def owner(self):
+        """The user that made it."""
+        return self.message.owner
+
+    @property
+    def shares(self):
+        """With whom it is shared, as {"user:ada": "READ", "course": "CONTROL"}: for those who may share it."""
+        return {share.grantee: Share.Access.Name(share.access) for share in self.message.shares}
 
     def refresh(self):
         self.message = self._client.call(self._client.render_service.GetJob, api.GetJobRequest(name=self.name))
@@ -79,8 +90,23 @@ class Job:
     def resume(self):
         return self._control(self._client.render_service.ResumeJob, api.ResumeJobRequest)
 
+    def share(self, grantee, *, control=False):
+        """Lets "user:NAME", "group:NAME" or "course" (everybody) see, watch and fetch it; with `control`, also cancel, pause
+        and resume it."""
+        share = Share(grantee=grantee, access=Share.CONTROL if control else Share.READ)
+        return self._change_shares(self._client.render_service.ShareJob, api.ShareJobRequest(name=self.name, share=share))
+
+    def unshare(self, grantee):
+        """Ends that. Raises BadRequest if it is not shared so."""
+        request = api.UnshareJobRequest(name=self.name, grantee=grantee)
+        return self._change_shares(self._client.render_service.UnshareJob, request)
+
     def delete(self):
         self._client.call(self._client.render_service.DeleteJob, api.DeleteJobRequest(name=self.name))
+
+    def _change_shares(self, method, request):
+        self.message = self._client.call(method, request)
+        return self
 
     def _control(self, method, request):
         self.message = self._client.call(method, request(name=self.name))

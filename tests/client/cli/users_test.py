@@ -62,6 +62,40 @@ class UsersTest(CliCase):
                 with open(self.path("data/" + name), "rb") as file:
                     self.assertNotIn(again.encode(), file.read(), name)
 
+    def test_jobs_are_shared(self):
+        tokens = self.tokens("ada") | self.tokens("bob", "--group", "lab-1") | self.tokens("cyd")
+        ada, bob, cyd = tokens["ada"], tokens["bob"], tokens["cyd"]
+        with Daemon(FLATLIGHTD, arguments=("--data", self.path("data"))) as daemon:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            job = self.as_user(ada, "submit", "gallery:cornell", "--samples", "1000000000", "--quiet").stdout.strip()
+            start = job[5:13]  # Of its UUID.
+            shared = self.as_user(ada, "share", start, "--with", "group:lab-1", "--with", "user:cyd").stdout
+            self.assertEqual(shared, f"{job} shared with group:lab-1 (read), user:cyd (read)\n")
+            self.assertIn("user:cyd (read)", self.as_user(ada, "show", start).stdout)
+            self.assertEqual(self.as_user(bob, "jobs").stdout, "no jobs\n")
+            header, row = self.as_user(bob, "jobs", "--shared").stdout.splitlines()
+            self.assertEqual((header.split()[:2], row.split()[:2]), (["JOB", "OWNER"], [job[5:], "ada"]))
+            seen = self.as_user(bob, "show", start).stdout
+            self.assertRegex(seen, r"owner +ada")
+            self.assertNotIn("cyd", seen)
+            self.assertIn("not yours", self.as_user(bob, "pause", start, status=4).stderr)
+
+            self.as_user(ada, "share", job, "--with", "group:lab-1", "--control", "--quiet")
+            self.assertIn("paused", self.as_user(bob, "pause", start).stdout)
+            self.assertIn("not delete or share it", self.as_user(bob, "unshare", job, "--with", "user:cyd", status=4).stderr)
+            left = json.loads(self.as_user(ada, "unshare", job, "--with", "group:lab-1", "--json").stdout)
+            self.assertEqual(left["shares"], [{"grantee": "user:cyd", "access": "READ"}])
+            self.assertIn("does not exist", self.as_user(bob, "show", job, status=2).stderr)
+            self.assertEqual(self.as_user(bob, "jobs", "--shared").stdout, "no jobs are shared with you\n")
+            self.as_user(cyd, "show", job)
+            self.assertIn("shared with nobody", self.as_user(ada, "unshare", job, "--with", "user:cyd").stdout)
+            self.assertIn("is not shared with user:cyd",
+                          self.as_user(ada, "unshare", job, "--with", "user:cyd", status=2).stderr)
+            self.assertIn("allowed: user:NAME", self.as_user(ada, "share", job, "--with", "cyd", status=2).stderr)
+            self.assertIn("--with", self.as_user(ada, "share", job, status=2).stderr)
+            self.assertIn("excludes", self.as_user(ada, "jobs", "--shared", "--prune", "1d", status=2).stderr)
+            self.as_user(ada, "cancel", job)
+
     def test_mistakes(self):
         self.assertIn("NAME or --roster", self.user("add", status=2).stderr)
         self.assertIn("--role", self.user("add", "ada", "--role", "king", status=2).stderr)

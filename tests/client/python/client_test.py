@@ -151,6 +151,13 @@ class ClientTest(PythonCase):
         self.assertNotEqual(job.resume().state, "PAUSED")
         self.assertEqual(job.cancel().wait(progress=None).state, "CANCELLED")
         self.assertEqual([other.name for other in client.jobs()], [job.name])
+        job.share("course").share("user:ada", control=True)
+        again = client.job(job.name)
+        self.assertEqual((again.owner, again.shares), ("anonymous", {"course": "READ", "user:ada": "CONTROL"}))
+        self.assertEqual(again.unshare("course").shares, {"user:ada": "CONTROL"})
+        with self.assertRaises(flatlight.BadRequest):
+            again.unshare("course")
+        self.assertEqual(list(client.jobs(shared=True)), [], "they are all the caller's own")
         job.delete()
         self.assertEqual(list(client.jobs()), [])
 

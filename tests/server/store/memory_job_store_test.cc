@@ -66,6 +66,36 @@ TEST_F(MemoryJobStoreTest, ListsInPagesNewestFirst) {
   EXPECT_FALSE(second.next_before);
 }
 
+TEST_F(MemoryJobStoreTest, SharesJobsWithOthers) {
+  const JobRecord jobs[] = {NewJob(), NewJob(), NewJob()};
+  const auto ada = Grantee::Of("ada", {"lab-1"});
+  for (const JobRecord& job : jobs) ASSERT_THAT(store_.Insert(job, {}, std::nullopt), IsOk());
+  const auto share = [&](const JobRecord& job, const char* whom, Access access) {
+    return store_.Share(job.spec->id, {*Grantee::Parse(whom), access});
+  };
+  ASSERT_THAT(share(jobs[0], "group:lab-1", Access::kRead), IsOk());
+  ASSERT_THAT(share(jobs[1], "user:bob", Access::kRead), IsOk());
+  ASSERT_THAT(share(jobs[2], "user:ada", Access::kControl), IsOk());
+  ASSERT_THAT(share(jobs[2], "course", Access::kRead), IsOk());
+  const JobPage first = *store_.ListShared(ada, "ada", std::nullopt, 1);
+  ASSERT_EQ(first.jobs.size(), 1u);
+  EXPECT_EQ(first.jobs[0].spec->id, jobs[2].spec->id);
+  const JobPage second = *store_.ListShared(ada, "ada", first.next_before, 1);
+  ASSERT_EQ(second.jobs.size(), 1u);
+  EXPECT_EQ(second.jobs[0].spec->id, jobs[0].spec->id);
+  EXPECT_FALSE(second.next_before);
+  EXPECT_TRUE(store_.ListShared(ada, jobs[0].spec->owner, std::nullopt, 9)->jobs.empty());
+
+  EXPECT_EQ(AccessOf(*store_.GrantsOf(jobs[2].spec->id), ada), Access::kControl);
+  EXPECT_EQ(AccessOf(*store_.GrantsOf(jobs[1].spec->id), ada), std::nullopt);
+  ASSERT_THAT(store_.Unshare(jobs[2].spec->id, *Grantee::Parse("user:ada")), IsOk());
+  EXPECT_EQ(AccessOf(*store_.GrantsOf(jobs[2].spec->id), ada), Access::kRead);
+  EXPECT_THAT(store_.Unshare(jobs[2].spec->id, *Grantee::Parse("user:ada")), StatusIs(absl::StatusCode::kNotFound, _));
+  ASSERT_THAT(store_.Delete(jobs[2].spec->id), IsOk());
+  EXPECT_THAT(share(jobs[2], "course", Access::kRead), StatusIs(absl::StatusCode::kNotFound, _));
+  EXPECT_TRUE(store_.GrantsOf(jobs[2].spec->id)->empty());
+}
+
 TEST_F(MemoryJobStoreTest, DropsTheOldestEndedJobToMakeRoom) {
   const JobRecord running = NewJob();
   const JobRecord old_ended = NewJob(JobPhase::kSucceeded);
