@@ -90,7 +90,6 @@ class CallInterceptor final : public grpc::experimental::Interceptor {
     call_.status = std::move(status);
     call_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     RequestId();
-    if (telemetry_.logs()) call_.peer = info_.server_context()->peer();
     telemetry_.Ended(info_.server_context(), call_);
   }
 
@@ -114,11 +113,16 @@ class Factory final : public grpc::experimental::ServerInterceptorFactoryInterfa
 }  // namespace
 
 CallTelemetry::CallTelemetry(Metrics& metrics, JsonLog* calls, JsonLog* audit, const std::vector<std::string>& services)
-    : metrics_(metrics), calls_(calls), audit_(audit), id_prefix_(RandomHex(4) + "-") {
+    : metrics_(metrics),
+      calls_(calls),
+      audit_(audit),
+      other_methods_(metrics.MethodOf(kOtherMethods)),
+      id_prefix_(RandomHex(4) + "-") {
   for (const std::string& name : services) {
     const auto* service = google::protobuf::DescriptorPool::generated_pool()->FindServiceByName(name);
     for (int i = 0; i < service->method_count(); ++i) {
-      methods_.insert("/" + service->full_name() + "/" + service->method(i)->name());
+      const std::string path = "/" + service->full_name() + "/" + service->method(i)->name();
+      methods_[path] = &metrics.MethodOf(path.substr(kPackage.size()));
     }
   }
 }
@@ -155,11 +159,12 @@ std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> CallTelem
 std::string CallTelemetry::NextRequestId() { return id_prefix_ + std::to_string(++next_id_); }
 
 void CallTelemetry::Ended(const grpc::ServerContextBase* context, const Call& call) {
-  const std::string code = absl::StatusCodeToString(static_cast<absl::StatusCode>(call.status.error_code()));
+  const auto code = static_cast<absl::StatusCode>(call.status.error_code());
   const std::string reason = ReasonOrCode(call.status);
-  const bool ours = methods_.count(call.method) > 0;
-  const std::string method = ours ? call.method.substr(kPackage.size()) : kOtherMethods;
-  metrics_.CallEnded(method, code, ours ? reason : "", call.seconds, static_cast<double>(call.sent_bytes));
+  const auto known = methods_.find(call.method);
+  const bool ours = known != methods_.end();
+  metrics_.CallEnded(ours ? *known->second : other_methods_, code, ours ? reason : "", call.seconds,
+                     static_cast<double>(call.sent_bytes));
   if (!logs()) return;
   Notes notes;
   {
@@ -167,18 +172,19 @@ void CallTelemetry::Ended(const grpc::ServerContextBase* context, const Call& ca
     const std::lock_guard lock(shard.mutex);
     if (auto node = shard.notes.extract(context)) notes = std::move(node.mapped());
   }
-  if (!ours) return;
+  const bool changes = !OnlyLooks(call.method) && (!notes.resource.empty() || !call.status.ok());
+  const bool audited = audit_ != nullptr && (changes || IsDenied(call.status));
+  if (!ours || (!audited && calls_ == nullptr)) return;
   JsonLog::Line line;
   line["request"] = call.request_id;
   line["caller"] = notes.caller;
-  line["method"] = method;
+  line["method"] = known->first.substr(kPackage.size());
   if (!notes.resource.empty()) line["resource"] = notes.resource;
   if (!notes.grantee.empty()) line["grantee"] = notes.grantee;
-  line["code"] = code;
+  line["code"] = absl::StatusCodeToString(code);
   if (!reason.empty()) line["reason"] = reason;
-  line["peer"] = call.peer;
-  const bool changes = !OnlyLooks(call.method) && (!notes.resource.empty() || !call.status.ok());
-  if (audit_ != nullptr && (changes || IsDenied(call.status))) audit_->Write(line);
+  line["peer"] = context->peer();
+  if (audited) audit_->Write(line);
   line["seconds"] = call.seconds;
   line["sent_bytes"] = call.sent_bytes;
   if (calls_ != nullptr) calls_->Write(line);

@@ -10,7 +10,6 @@
 #include <mutex>
 #include <string>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
@@ -39,9 +38,8 @@ class CallTelemetry {
   std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> MakeFactory();
 
   struct Call {
-    std::string method;  // "/flatlight.v1.RenderService/CreateJob".
+    const char* method = "";  // "/flatlight.v1.RenderService/CreateJob".
     std::string request_id;
-    std::string peer;
     double seconds = 0;
     std::uint64_t sent_bytes = 0;
     grpc::Status status;
@@ -71,7 +69,8 @@ class CallTelemetry {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   JsonLog* const calls_;
   JsonLog* const audit_;
-  std::unordered_set<std::string> methods_;  // Of the services.
+  std::unordered_map<std::string, Metrics::Method*> methods_;  // Of the services, by their path.
+  Metrics::Method& other_methods_;
   const std::string id_prefix_;
   std::atomic<std::uint64_t> next_id_ = 0;
   std::array<Shard, 16> shards_;

@@ -18,7 +18,8 @@ absl::Status Refuse(const std::string& message) {
 }  // namespace
 
 Guard::Guard(const std::string& token, std::unique_ptr<Database> users)
-    : token_hash_(token.empty() ? "" : Sha256Of(token)), users_(std::move(users)) {}
+    : token_hash_(token.empty() ? "" : Sha256Of(token)),
+      users_(users == nullptr ? nullptr : std::make_unique<UserDirectory>(std::move(users))) {}
 
 absl::StatusOr<Caller> Guard::Authorize(const grpc::ServerContextBase& context, std::string_view request) const {
   auto caller = Authenticate(context);
@@ -33,12 +34,8 @@ absl::StatusOr<bool> Guard::KnowsEverybody() const {
 }
 
 absl::StatusOr<bool> Guard::HasUsers() const {
-  if (has_users_) return true;
-  const std::lock_guard lock(mutex_);
   if (users_ == nullptr) return false;
-  auto some = UserStore(*users_).HasUsers();
-  if (some.ok() && *some) has_users_ = true;
-  return some;
+  return users_->HasUsers();
 }
 
 absl::StatusOr<Caller> Guard::Authenticate(const grpc::ServerContextBase& context) const {
@@ -58,8 +55,7 @@ absl::StatusOr<Caller> Guard::Authenticate(const grpc::ServerContextBase& contex
     return Caller{std::string(kServerOwner), Role::kAdmin, {}};
   }
   if (!*has_users) return Refuse("the token is not this server's");
-  const std::lock_guard lock(mutex_);
-  auto user = UserStore(*users_).Authenticate(token);
+  auto user = users_->FindByTokenHash(hash);
   if (!user.ok()) return user.status();
   return Caller{std::move(user->name), user->role, std::move(user->groups)};
 }

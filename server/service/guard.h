@@ -2,17 +2,14 @@
 #ifndef FLATLIGHT_SERVER_SERVICE_GUARD_H_
 #define FLATLIGHT_SERVER_SERVICE_GUARD_H_
 
-#include <atomic>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 
-#include "absl/base/thread_annotations.h"
 #include "absl/status/statusor.h"
 #include "grpcpp/server_context.h"
 #include "server/service/policy.h"
-#include "server/store/database.h"
+#include "server/store/user_directory.h"
 
 namespace flatlight {
 
@@ -37,13 +34,10 @@ class Guard {
 
  private:
   absl::StatusOr<Caller> Authenticate(const grpc::ServerContextBase& context) const;
-  // Sticky: it is asked on every call until it is true.
   absl::StatusOr<bool> HasUsers() const;
 
-  const std::string token_hash_;  // Empty: no token.
-  mutable std::atomic<bool> has_users_ = false;
-  mutable std::mutex mutex_;
-  const std::unique_ptr<Database> users_ ABSL_PT_GUARDED_BY(mutex_);
+  const std::string token_hash_;                // Empty: no token.
+  const std::unique_ptr<UserDirectory> users_;  // Null: none.
 };
 
 }  // namespace flatlight

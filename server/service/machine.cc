@@ -8,13 +8,22 @@
 
 namespace flatlight {
 
-std::string ProcessorModel() {
+namespace {
+
+std::string ReadProcessorModel() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
     const std::size_t colon = line.find(": ");
     if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
   }
   return "";
+}
+
+}  // namespace
+
+const std::string& ProcessorModel() {
+  static const std::string kModel = ReadProcessorModel();
+  return kModel;
 }
 
 std::uint32_t UsableProcessors() {

@@ -8,8 +8,8 @@
 
 namespace flatlight {
 
-// Empty if the system does not tell.
-std::string ProcessorModel();
+// Empty if the system does not tell. Read once: the file takes the system long to make.
+const std::string& ProcessorModel();
 
 // That this process may use.
 std::uint32_t UsableProcessors();

@@ -38,8 +38,10 @@ grpc::ServerUnaryReactor* RenderService::CreateJob(Context* context, const Bytes
 }
 
 grpc::ServerUnaryReactor* RenderService::GetJob(Context* context, const Bytes* request, Bytes* response) {
-  // A store on disk may take a while.
-  const auto lane = [this](const v1::GetJobRequest&) { return backend_.jobs.durable() ? Lane::kQuick : Lane::kInline; };
+  const auto lane = [this](const v1::GetJobRequest& r) {
+    const auto id = ParseJobName(r.name());
+    return !id.ok() || backend_.jobs.IsAtHand(*id) ? Lane::kInline : Lane::kQuick;
+  };
   return Answer<v1::GetJobRequest>(
       backend_, context, request, response, lane,
       [this](const Caller& caller, const v1::GetJobRequest& r) { return flatlight::GetJob(backend_, caller, r); });

@@ -107,6 +107,8 @@ absl::StatusOr<bool> Statement::Step() {
   }
 }
 
+void Statement::Reset() { sqlite3_reset(statement_.get()); }
+
 absl::Status Statement::Run() {
   while (true) {
     const auto row = Step();

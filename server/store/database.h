@@ -30,6 +30,8 @@ class Statement {
 
   // Whether there is a (further) row.
   absl::StatusOr<bool> Step();
+  // To before the first row, with the parameters as they are.
+  void Reset();
   // To the end, for statements that give no rows.
   absl::Status Run();
 

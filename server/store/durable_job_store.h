@@ -57,6 +57,7 @@ class DurableJobStore final : public JobStore {
                                    const std::optional<RequestKey>& key) override;
   absl::Status Update(const JobRecord& job) override;
   absl::StatusOr<JobRecord> Get(const JobId& id) override;
+  bool IsAtHand(const JobId& id) override { return memory_.Get(id).ok(); }
   absl::StatusOr<JobRecord> GetWhole(const JobId& id) override;
   absl::StatusOr<JobPage> List(std::optional<std::uint64_t> before, std::size_t limit) override;
   absl::StatusOr<JobPage> ListShared(const std::vector<Grantee>& who, const std::string& owner,

@@ -59,6 +59,8 @@ class JobStore {
   // The field of a job that has ended may be left out.
   virtual absl::StatusOr<JobRecord> Get(const JobId& id) = 0;
   virtual absl::StatusOr<JobRecord> GetWhole(const JobId& id) { return Get(id); }
+  // Whether Get answers at once: without a look at the disk, which may take a while.
+  virtual bool IsAtHand(const JobId& /*id*/) { return true; }
   // At most `limit` jobs, from the newest one, or from the newest one older than `before`. Fields may be left out.
   virtual absl::StatusOr<JobPage> List(std::optional<std::uint64_t> before, std::size_t limit) = 0;
   // The same, of jobs that are shared with one of `who` and are not `owner`'s.

@@ -132,10 +132,12 @@ absl::Status UserStore::Revoke(const std::string& name) {
   return MakeError(absl::StatusCode::kNotFound, "USER_NOT_FOUND", "there is no user \"" + name + "\"");
 }
 
-absl::StatusOr<User> UserStore::Authenticate(std::string_view token) {
+absl::StatusOr<User> UserStore::Authenticate(std::string_view token) { return FindByTokenHash(Sha256Of(token)); }
+
+absl::StatusOr<User> UserStore::FindByTokenHash(const std::string& token_sha256) {
   // What is compared is a hash, whose timing tells nothing of the token.
   Statement rows = database_.Prepare("SELECT name, role FROM users WHERE token_sha256 = ?");
-  const auto row = rows.Bind(std::string_view(Sha256Of(token))).Step();
+  const auto row = rows.Bind(std::string_view(token_sha256)).Step();
   if (!row.ok()) return row.status();
   if (!*row) {
     return MakeError(absl::StatusCode::kUnauthenticated, "TOKEN_INVALID",

@@ -52,6 +52,7 @@ class UserStore {
   absl::Status Revoke(const std::string& name);
   // UNAUTHENTICATED with TOKEN_INVALID.
   absl::StatusOr<User> Authenticate(std::string_view token);
+  absl::StatusOr<User> FindByTokenHash(const std::string& token_sha256);  // In lower-case hexadecimal.
   // Whether there have ever been users: revoking the last one opens nothing to strangers.
   absl::StatusOr<bool> HasUsers();
 

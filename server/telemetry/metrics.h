@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "server/scheduler/scheduler_events.h"
 
@@ -36,9 +37,12 @@ class Metrics final : public SchedulerEvents {
   void Cancelled(const JobSpec& spec, Clock::Duration latency) override;
   void Ended(const JobSpec& spec, const JobState& state) override;
 
-  // A call of "/package.Service/Method" has its answer: `code` in gRPC's words, `reason` of an error's ErrorInfo.
-  void CallEnded(const std::string& method, const std::string& code, const std::string& reason, double seconds,
-                 double sent_bytes);
+  // Calls of one method. The series are found once, and shown from the first call on.
+  class Method;
+  // Of "Service/Method"; it lives as long as this.
+  Method& MethodOf(const std::string& name);
+  // A call has its answer: `reason` of an error's ErrorInfo, empty if there is none.
+  void CallEnded(Method& method, absl::StatusCode code, const std::string& reason, double seconds, double sent_bytes);
   // Called at each look until Close.
   void ReadWith(std::function<Readings()> read);
   void Close();

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/user_directory.h"
+
+#include <utility>
+
+namespace flatlight {
+
+// The number changes when another connection has committed; to ask for it costs a few microseconds.
+UserDirectory::UserDirectory(std::unique_ptr<Database> database)
+    : database_(std::move(database)), version_query_(database_->Prepare("PRAGMA data_version")) {}
+
+absl::Status UserDirectory::ForgetWhatChanged() {
+  const auto row = version_query_.Step();
+  if (!row.ok()) {
+    version_query_.Reset();
+    return row.status();
+  }
+  const std::int64_t version = version_query_.Integer(0);
+  version_query_.Reset();
+  if (version == version_) return absl::OkStatus();
+  version_ = version;
+  by_token_hash_.clear();
+  if (has_users_ == false) has_users_.reset();
+  return absl::OkStatus();
+}
+
+absl::StatusOr<bool> UserDirectory::HasUsers() {
+  const std::lock_guard lock(mutex_);
+  if (has_users_ == true) return true;
+  if (absl::Status looked = ForgetWhatChanged(); !looked.ok()) return looked;
+  if (has_users_) return *has_users_;
+  const auto some = UserStore(*database_).HasUsers();
+  if (some.ok()) has_users_ = *some;
+  return some;
+}
+
+absl::StatusOr<User> UserDirectory::FindByTokenHash(const std::string& token_sha256) {
+  const std::lock_guard lock(mutex_);
+  if (absl::Status looked = ForgetWhatChanged(); !looked.ok()) return looked;
+  if (const auto known = by_token_hash_.find(token_sha256); known != by_token_hash_.end()) return known->second;
+  auto user = UserStore(*database_).FindByTokenHash(token_sha256);
+  // Guesses are not remembered: there is no end of them.
+  if (!user.ok()) return user;
+  if (by_token_hash_.size() >= kMostRemembered) by_token_hash_.clear();
+  by_token_hash_.emplace(token_sha256, *user);
+  return user;
+}
+
+}  // namespace flatlight
