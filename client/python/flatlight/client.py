@@ -69,13 +69,14 @@ class Client:
         except grpc.RpcError as error:
             raise error_of(error, self.address) from None
 
-    def submit(self, scene, *, probes=(), job_class=None, request_id=None, settings=None, **keywords):
+    def submit(self, scene, *, probes=(), job_class=None, request_id=None, anew=False, settings=None, **keywords):
         """Submits a job and returns it at once. `scene`: gallery:NAME, a file's path, a dictionary in the file's form.
         Settings are keywords (method="path-tracing", target_error=0.01) or a flatlight.v1.Settings. `job_class`:
-        interactive, graded or regrade. The same `request_id` (a UUID) finds the job of the first call."""
+        interactive, graded or regrade. The same `request_id` (a UUID) finds the job of the first call.
+        `anew`: the job does its own work, also if an equal one of the server has done it."""
         request = render_service_pb2.CreateJobRequest(scene=scenes.provide(self, scene, probes),
                                                       settings=_settings(settings, keywords),
-                                                      request_id=request_id or str(uuid.uuid4()))
+                                                      request_id=request_id or str(uuid.uuid4()), anew=anew)
         if job_class is not None:
             request.job_class = enum_value(request.DESCRIPTOR.fields_by_name["job_class"].enum_type, job_class, "job_class")
         return Job(self, self.call(self.render_service.CreateJob, request))

@@ -50,7 +50,7 @@ class Job:
 
     def watch(self, **options):
         """Iterates over Snapshots until the job has ended; a broken connection is taken up again. Leaving early leaves the
-        job alone. Options: see flatlight.Watch."""
+        job alone, unless it is watched with cancel_on_disconnect=True. Options: see flatlight.Watch."""
         for snapshot in Watch(self._client, self.name, **options):
             self.message = snapshot.job
             yield snapshot

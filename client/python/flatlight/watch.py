@@ -103,11 +103,13 @@ class _Silence:
 class Watch:
     """Iterates over the Snapshots of the job `name`, the last of which has ended. max_rate: updates a second. patience:
     seconds without a message after which a lost server is an error. silence: seconds without a message after which the
-    stream is begun anew (heartbeats come every 10 s)."""
+    stream is begun anew (heartbeats come every 10 s). cancel_on_disconnect: the server cancels the job when it loses this
+    watch before the end, be it that you leave it, that the program ends, or that the connection breaks."""
 
-    def __init__(self, client, name, *, max_rate=10, patience=30, silence=25):
+    def __init__(self, client, name, *, max_rate=10, patience=30, silence=25, cancel_on_disconnect=False):
         self._client = client
-        self._request = render_service_pb2.WatchJobRequest(name=name, max_rate=max_rate)
+        self._request = render_service_pb2.WatchJobRequest(name=name, max_rate=max_rate,
+                                                           cancel_on_disconnect=cancel_on_disconnect)
         self._patience = patience
         self._silence = silence
         self._heard = time.monotonic()

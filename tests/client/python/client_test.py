@@ -41,6 +41,14 @@ class ClientTest(PythonCase):
         self.assertTrue(floor.known.all())
         self.assertEqual(floor.normals.shape, (64, 2))
 
+    def test_equal_work_is_done_again_only_on_wish(self):
+        client = self.connect(self.serve().address)
+        jobs = [client.submit(LAMP, method="path-tracing", samples=16, anew=anew).wait(progress=None).refresh()
+                for anew in (False, False, True)]
+        self.assertEqual([job.message.shared_work for job in jobs], [False, True, False])
+        one, _, other = [job.result()["floor"] for job in jobs]
+        np.testing.assert_array_equal(one.irradiance, other.irradiance)
+
     def test_colours_pictures_and_errors_have_the_shapes_of_the_csv_file(self):
         client = self.connect(self.serve().address)
         picture = {"name": "plane", "fluence": {"width": 20, "height": 10}}

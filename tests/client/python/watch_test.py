@@ -58,6 +58,19 @@ class WatchTest(PythonCase):
             self.assertGreaterEqual(last.resumes, 1)
             self.assertIsNot(client.render_service, others)
 
+    def test_leaving_cancels_only_on_wish(self):
+        client = self.connect(self.serve().address)
+        for cancel in (False, True):
+            job = client.submit(**ENDLESS, anew=True)
+            watch = job.watch(cancel_on_disconnect=cancel)
+            next(watch)
+            watch.close()
+            if not cancel:
+                self.assertEqual(job.refresh().state, "RUNNING")
+                job.cancel()
+            job.wait(progress=None)
+            self.assertEqual(job.state, "CANCELLED")
+
     def test_a_restarted_server_goes_on_with_the_same_bits(self):
         data = self.path("data")
         settings = {"scene": "gallery:cornell", "method": "path-tracing", "samples": 2048}
