@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/plane/photon_mapping/width_choice.h"
 #include "core/render/photon_mapping_rendering.h"
 #include "core/render/world_units.h"
 
@@ -15,14 +14,22 @@ constexpr double kDarkest = 0.01;  // Errors count in this share of the probe's 
 
 }  // namespace
 
-PhotonMappingRendering::Value PhotonMappingRendering::ValueAt(std::size_t number) const {
+std::vector<WidthChooser> PhotonMappingRendering::Choosers() const {
+  std::vector<WidthChooser> choosers(scene_->probes().size());
+  if (!chooses_widths_ || photons_done_ == 0) return choosers;
+  for (std::size_t point = 0; point < points_.size(); ++point) choosers[probe_of_point_[point]].Add(LadderAt(point));
+  return choosers;
+}
+
+PhotonMappingRendering::Value PhotonMappingRendering::ValueAt(std::size_t number,
+                                                              const std::vector<WidthChooser>& choosers) const {
   const Point& point = points_[number];
   Value value;
-  value.value = {point.direct.irradiance, {}, point.direct.gradient, {}};
-  value.error = {point.direct.irradiance_error, {}, point.direct.gradient_error, {}};
+  value.value = {point.direct.irradiance, {}, point.direct.gradient, {}, {}};
+  value.error = {point.direct.irradiance_error, {}, point.direct.gradient_error, {}, {}};
   if (photons_done_ == 0) return value;
   if (chooses_widths_) {
-    AddDensity(number, value);
+    AddDensity(number, choosers[probe_of_point_[number]], value);
     return value;
   }
   for (std::size_t q = 0; q < quantities_; ++q) {
@@ -52,13 +59,13 @@ MeanEstimate PhotonMappingRendering::MeanOf(std::size_t point, std::size_t quant
   return EstimateMean(values, step);
 }
 
-void PhotonMappingRendering::AddDensity(std::size_t number, Value& value) const {
+WidthLadder PhotonMappingRendering::LadderAt(std::size_t number) const {
   WidthLadder ladder;
   ladder.widest = points_[number].widest;
   const Spectrum& flux = light_->sources().flux();
-  const auto photons = static_cast<double>(photons_done_);
   // By all channels together.
-  for (std::size_t c = 0; c < channels_; ++c) ladder.photon += flux[static_cast<int>(c)] / photons;
+  for (std::size_t c = 0; c < channels_; ++c)
+    ladder.photon += flux[static_cast<int>(c)] / static_cast<double>(photons_done_);
   ladder.densities.resize(quantities_);
   for (std::size_t j = 0; j < quantities_; ++j) {
     for (std::size_t r = 0; r < kReplicates; ++r) {
@@ -67,7 +74,14 @@ void PhotonMappingRendering::AddDensity(std::size_t number, Value& value) const 
             sums_[Index(number, r, j) + c] / static_cast<double>(PhotonTrace::PathsOf(r, photons_done_));
     }
   }
-  const WidthChoice choice = ChooseWidth(ladder);
+  return ladder;
+}
+
+void PhotonMappingRendering::AddDensity(std::size_t number, const WidthChooser& chooser, Value& value) const {
+  const WidthLadder ladder = LadderAt(number);
+  const Spectrum& flux = light_->sources().flux();
+  const auto photons = static_cast<double>(photons_done_);
+  const WidthChoice choice = chooser.Choose(ladder);
   double width = ladder.widest;
   for (std::size_t j = 0; j < choice.chosen; ++j) width /= WidthLadder::kRatio;
   double all = 0;
@@ -88,8 +102,9 @@ void PhotonMappingRendering::AddDensity(std::size_t number, Value& value) const 
 double PhotonMappingRendering::WorstError() const {
   std::vector<Spectrum> means(scene_->probes().size());
   std::vector<Value> values;
+  const std::vector<WidthChooser> choosers = Choosers();
   for (std::size_t point = 0; point < points_.size(); ++point) {
-    values.push_back(ValueAt(point));
+    values.push_back(ValueAt(point, choosers));
     const std::size_t probe = probe_of_point_[point];
     const double share = 1 / static_cast<double>(scene_->probes()[probe].receivers.size());
     means[probe] = means[probe] + share * values.back().value[kIrradiance];
@@ -134,10 +149,11 @@ std::shared_ptr<const Field> PhotonMappingRendering::Snapshot() const {
   // Nothing is known yet.
   const bool known = done() || photons_done_ > 0;
   std::size_t number = 0;
+  const std::vector<WidthChooser> choosers = Choosers();
   for (const Probe& probe : scene_->probes()) {
     ProbeField& values = field->probes.emplace_back();
     for (std::size_t i = 0; known && i < probe.receivers.size(); ++i, ++number) {
-      const Value value = ValueAt(number);
+      const Value value = ValueAt(number, choosers);
       if (gathers_) values.samples.push_back(gathered_rays_);
       for (int c = 0; c < static_cast<int>(channels_); ++c) {
         const double irradiance = value.value[kIrradiance][c];
@@ -148,8 +164,8 @@ std::shared_ptr<const Field> PhotonMappingRendering::Snapshot() const {
         values.estimated_bias.push_back(units.irradiance * std::abs(value.value[kBias][c]));
         if (derivatives_ > 0) {
           values.gradient.push_back(units.gradient * value.value[kGradient][c]);
-          values.gradient_error.push_back(units.gradient *
-                                          (value.error[kGradient][c] + std::abs(value.value[kGradientBias][c])));
+          const double bias = std::abs(value.value[kGradientBias][c]) + std::abs(value.value[kGatherBias][c]);
+          values.gradient_error.push_back(units.gradient * (value.error[kGradient][c] + bias));
         }
         if (derivatives_ > 1) {
           values.hessian.push_back(units.hessian * points_[number].direct.hessian[c]);

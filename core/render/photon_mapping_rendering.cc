@@ -117,7 +117,7 @@ PhotonMappingRendering::PhotonMappingRendering(std::shared_ptr<const Scene> scen
   // What a gather finds is reflected once more.
   std::optional<std::uint32_t> traced = most_bounces;
   if (traced && gathers_) --*traced;
-  light_.emplace(caster_, Around(*scene_), traced);
+  light_.emplace(caster_, Around(*scene_), traced, kLeastPhotonShare);
   if (light_->sources().empty()) {
     light_.reset();
     return;
@@ -240,7 +240,7 @@ bool PhotonMappingRendering::LookUpAt(std::size_t number, std::size_t r, const C
     const GatheredLight bias = GatherReflected(pass_.trees[kReplicates + r], gather_from_[number], bias_rays,
                                                ChildKey(key, 0), gradient, cancellation);
     if (!light.whole || !bias.whole) return false;
-    value = {light.irradiance, bias.irradiance, light.gradient, bias.gradient};
+    value = {light.irradiance, bias.irradiance, light.gradient, bias.gradient, light.gradient_bias};
     cast = light.cast + bias.cast;
     std::vector<ChainedLight> chained;
     tree_->chains().FindByChance(ChainEffort::kFine, {gather_from_[number].position, gather_from_[number].element},

@@ -18,6 +18,7 @@
 #include "core/plane/photon_mapping/photon_maps.h"
 #include "core/plane/photon_mapping/photon_tracer.h"
 #include "core/plane/photon_mapping/stretches.h"
+#include "core/plane/photon_mapping/width_choice.h"
 #include "core/plane/ray_caster.h"
 #include "core/plane/ray_tracing/ray_tree.h"
 #include "core/render/idle_pool.h"
@@ -51,7 +52,7 @@ class PhotonMappingRendering final : public Rendering {
   static constexpr std::uint64_t kMostPassPhotons = std::uint64_t{1} << 18;
 
  private:
-  enum Quantity : std::size_t { kIrradiance, kBias, kGradient, kGradientBias, kQuantities };
+  enum Quantity : std::size_t { kIrradiance, kBias, kGradient, kGradientBias, kGatherBias, kQuantities };
   // Widths of densities that are kept at each point, to choose from when all photons are known.
   static constexpr std::size_t kWidths = 16;
   static constexpr std::size_t kFewWidths = 8;
@@ -98,8 +99,11 @@ class PhotonMappingRendering final : public Rendering {
   std::size_t Index(std::size_t point, std::size_t replicate, std::size_t quantity) const {
     return ((point * kReplicates + replicate) * quantities_ + quantity) * channels_;
   }
-  Value ValueAt(std::size_t point) const;
-  void AddDensity(std::size_t point, Value& value) const;
+  // By probe; of no use where widths are given.
+  std::vector<WidthChooser> Choosers() const;
+  Value ValueAt(std::size_t point, const std::vector<WidthChooser>& choosers) const;
+  WidthLadder LadderAt(std::size_t point) const;
+  void AddDensity(std::size_t point, const WidthChooser& chooser, Value& value) const;
   MeanEstimate MeanOf(std::size_t point, std::size_t quantity, std::size_t channel, double step) const;
   double WorstError() const;
 

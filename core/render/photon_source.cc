@@ -32,7 +32,7 @@ std::optional<std::uint32_t> TracedBounces(const Settings& settings) {
 PhotonSource::PhotonSource(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const RayCaster>& caster,
                            const Settings& settings)
     : stretches_(caster->scene()),
-      light_(caster, Nowhere(), TracedBounces(settings)),
+      light_(caster, Nowhere(), TracedBounces(settings), kLeastPhotonShare),
       tracer_(light_, caster->scene(), *scene, stretches_, PhotonPurpose::kReflectors, MostBounces(settings)),
       trace_(settings.seed.value_or(0), 0, std::max<std::uint64_t>(*settings.photons, kReplicates)) {}
 

@@ -9,10 +9,11 @@
 namespace flatlight {
 
 LightTracer::LightTracer(std::shared_ptr<const RayCaster> caster, const Box& seen,
-                         std::optional<std::uint32_t> max_bounces)
+                         std::optional<std::uint32_t> max_bounces, double least_share)
     : caster_(std::move(caster)),
       scene_(caster_->scene()),
       most_bounces_(max_bounces.value_or(std::numeric_limits<std::uint32_t>::max())),
+      least_share_(least_share),
       sources_(scene_, seen),
       far_(8 + 4 * Length(seen.high - Point2{}) + 4 * Length(seen.low - Point2{})) {
   for (const Curve& curve : scene_.curves()) {
@@ -31,7 +32,7 @@ double LightTracer::AddPath(const SampleStream& stream, std::uint32_t index, std
 }
 
 bool LightTracer::Scatter(const Hit& hit, const SampleStream& stream, std::uint32_t index, std::uint32_t depth,
-                          Vector2& direction, Spectrum& flux) const {
+                          double least_flux, Vector2& direction, Spectrum& flux) const {
   const auto curve = static_cast<std::size_t>(scene_.element(hit.element).curve);
   const bool front = Dot(hit.normal, direction) < 0;
   const Vector2 normal = front ? hit.normal : -hit.normal;
@@ -41,9 +42,8 @@ bool LightTracer::Scatter(const Hit& hit, const SampleStream& stream, std::uint3
   const std::optional<ScatterSample> sample =
       scatterings_[2 * curve + (front ? 0 : 1)].Sample(arriving, random.v, random.u);
   if (!sample.has_value()) return false;
-  const double before = flux.Max();
   flux = sample->weight * flux;
-  double survival = std::min(1.0, flux.Max() / before);
+  double survival = std::min(1.0, flux.Max() / least_flux);
   if (depth > std::uint32_t{kMostLossless}) survival = std::min(survival, kLosslessSurvival);
   if (stream.Single(index, depth) >= survival) return false;
   flux = (1 / survival) * flux;

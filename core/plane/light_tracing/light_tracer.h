@@ -33,7 +33,8 @@ struct LightStep {
 class LightTracer {
  public:
   // `seen`: encloses the images. max_bounces: reflections and refractions before light counts no more; absent: all.
-  LightTracer(std::shared_ptr<const RayCaster> caster, const Box& seen, std::optional<std::uint32_t> max_bounces);
+  LightTracer(std::shared_ptr<const RayCaster> caster, const Box& seen, std::optional<std::uint32_t> max_bounces,
+              double least_share = 1);
 
   const LightSources& sources() const { return sources_; }
 
@@ -48,6 +49,7 @@ class LightTracer {
     const SamplePair start = stream.Pair(index, 0);
     const EmittedRay emitted = sources_.Emit(start.u, start.v);
     SurfacePoint at = emitted.from;
+    const double least_flux = least_share_ * emitted.flux.Max();
     Vector2 direction = emitted.direction;
     Spectrum flux = emitted.flux;
     double rays = 0;
@@ -56,7 +58,7 @@ class LightTracer {
       ++rays;
       visit(LightStep{emitted, at, direction, hit, flux, depth});
       if (!hit || depth == most_bounces_) break;
-      if (!Scatter(*hit, stream, index, depth, direction, flux)) break;
+      if (!Scatter(*hit, stream, index, depth, least_flux, direction, flux)) break;
       at = {hit->position, hit->element};
     }
     return rays;
@@ -64,12 +66,13 @@ class LightTracer {
 
  private:
   // Changes a path's flux and direction where it meets a curve. False if it ends there.
-  bool Scatter(const Hit& hit, const SampleStream& stream, std::uint32_t index, std::uint32_t depth, Vector2& direction,
-               Spectrum& flux) const;
+  bool Scatter(const Hit& hit, const SampleStream& stream, std::uint32_t index, std::uint32_t depth, double least_flux,
+               Vector2& direction, Spectrum& flux) const;
 
   std::shared_ptr<const RayCaster> caster_;
   const Scene& scene_;
   std::uint32_t most_bounces_;
+  double least_share_;
   LightSources sources_;
   double far_;                           // Beyond everything.
   std::vector<Scattering> scatterings_;  // By curve, front and back.

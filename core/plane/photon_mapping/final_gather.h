@@ -14,6 +14,7 @@ namespace flatlight {
 struct GatheredLight {
   Spectrum irradiance;
   Spectrum gradient;            // Per arc length along increasing arc length.
+  Spectrum gradient_bias;       // Its error that falls with the number of rays, as half of them tell.
   double inverse_distance = 0;  // Of what the rays met, the mean weighed by the cosine.
   double cast = 0;              // Rays.
   bool whole = false;           // Not cancelled.

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/plane/photon_mapping/width_choice.h"
-
 namespace flatlight {
 namespace {
 
@@ -14,6 +12,7 @@ namespace {
 constexpr std::size_t kPhotonsPerWidth = 16;
 constexpr std::size_t kMostWidths = 64;
 constexpr std::size_t kLadder = 12;  // Widths to choose from.
+constexpr std::size_t kMostLadders = 1 << 12;
 // Of the difference between two widths: where it would have to be more, there is hardly any.
 constexpr double kLargestFactor = 4;
 
@@ -60,31 +59,49 @@ void PhotonMaps::ChooseWidths(Executor& executor, int max_threads) {
     SidePlace place;
     double photon;
   };
-  std::vector<Task> tasks;
   double paths = 0;
   for (const double of : paths_) paths += of;
-  for (const SideId side : ranges_.sides()) {
-    first_width_.push_back(tasks.size());
-    const auto [first, last] = ranges_.Of(side);
-    double flux = 0;
-    for (std::size_t i = first; i < last; ++i) {
-      const Spectrum& of = replicates_[nearby_[i].replicate][nearby_[i].index].flux;
-      flux += of[0] + of[1] + of[2];
+  const std::vector<SideId>& sides = ranges_.sides();
+  for (std::size_t begin = 0; begin < sides.size();) {
+    // Ladders take much memory: of so many sides at a time.
+    std::vector<Task> tasks;
+    std::vector<std::size_t> ends;
+    const std::size_t before = widths_.size();
+    for (; begin < sides.size() && tasks.size() < kMostLadders; ++begin) {
+      first_width_.push_back(before + tasks.size());
+      const auto [first, last] = ranges_.Of(sides[begin]);
+      double flux = 0;
+      for (std::size_t i = first; i < last; ++i) {
+        const Spectrum& of = replicates_[nearby_[i].replicate][nearby_[i].index].flux;
+        flux += of[0] + of[1] + of[2];
+      }
+      const double photon = flux / static_cast<double>(last - first) / paths;
+      const std::size_t count = std::clamp((last - first) / kPhotonsPerWidth, std::size_t{1}, kMostWidths);
+      for (std::size_t i = 0; i < count; ++i) {
+        const double fraction = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+        tasks.push_back({{sides[begin], fraction * stretches_.length(sides[begin])}, photon});
+      }
+      ends.push_back(tasks.size());
     }
-    const double photon = flux / static_cast<double>(last - first) / paths;
-    const std::size_t count = std::clamp((last - first) / kPhotonsPerWidth, std::size_t{1}, kMostWidths);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double fraction = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-      tasks.push_back({{side, fraction * stretches_.length(side)}, photon});
-    }
+    std::vector<WidthLadder> ladders(tasks.size());
+    executor.ParallelFor(tasks.size(), max_threads,
+                         [&](std::size_t i) { ladders[i] = LadderAt(tasks[i].place, tasks[i].photon); });
+    widths_.resize(before + tasks.size());
+    executor.ParallelFor(ends.size(), max_threads, [&](std::size_t side) {
+      const std::size_t first = side == 0 ? 0 : ends[side - 1];
+      WidthChooser chooser;
+      for (std::size_t i = first; i < ends[side]; ++i) chooser.Add(ladders[i]);
+      for (std::size_t i = first; i < ends[side]; ++i) {
+        double width = options_.narrowing * ladders[i].widest;
+        for (std::size_t j = chooser.Choose(ladders[i]).chosen; j > 0; --j) width /= WidthLadder::kRatio;
+        widths_[before + i] = width;
+      }
+    });
   }
-  first_width_.push_back(tasks.size());
-  widths_.resize(tasks.size());
-  executor.ParallelFor(tasks.size(), max_threads,
-                       [&](std::size_t i) { widths_[i] = WidthFor(tasks[i].place, tasks[i].photon); });
+  first_width_.push_back(widths_.size());
 }
 
-double PhotonMaps::WidthFor(const SidePlace& place, double photon) const {
+WidthLadder PhotonMaps::LadderAt(const SidePlace& place, double photon) const {
   constexpr std::uint32_t kAnyBounces = std::numeric_limits<std::uint32_t>::max();
   WidthLadder ladder;
   ladder.widest = Widest(place);
@@ -98,9 +115,7 @@ double PhotonMaps::WidthFor(const SidePlace& place, double photon) const {
       densities[r] = density[0] + density[1] + density[2];
     }
   }
-  width = ladder.widest;
-  for (std::size_t j = ChooseWidth(ladder).chosen; j > 0; --j) width /= WidthLadder::kRatio;
-  return options_.narrowing * width;
+  return ladder;
 }
 
 double PhotonMaps::ChosenWidth(const SidePlace& place) const {

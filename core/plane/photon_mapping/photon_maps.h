@@ -14,6 +14,7 @@
 #include "core/plane/photon_mapping/photon_tracer.h"
 #include "core/plane/photon_mapping/sorted_photons.h"
 #include "core/plane/photon_mapping/stretches.h"
+#include "core/plane/photon_mapping/width_choice.h"
 #include "core/plane/ray_tracing/ray_tree.h"
 #include "core/statistics/replicates.h"
 
@@ -22,7 +23,7 @@ namespace flatlight {
 // How far photons count.
 struct DensityOptions {
   Kernel kernel = Kernel::kEpanechnikov;
-  // At most one of these. Neither: what is best by the photons themselves (ChooseWidth), at some places of each side.
+  // At most one of these. Neither: what is best by the photons themselves (WidthChooser), at some places of each side.
   std::optional<double> neighbours;  // So many photons that are nearest; at least 2.
   std::optional<double> bandwidth;   // Half the kernel's width; normalised.
   // Of the widths that are chosen: less than 1 where maps before this one have a part in what noise there may be.
@@ -77,7 +78,7 @@ class PhotonMaps {
 
   void ChooseWidths(Executor& executor, int max_threads);
   double ChosenWidth(const SidePlace& place) const;
-  double WidthFor(const SidePlace& place, double photon) const;
+  WidthLadder LadderAt(const SidePlace& place, double photon) const;
   void SetNearest(std::size_t first, std::size_t last, std::size_t count, DensityWindow& window) const;
   EndedKernel KernelAt(const SidePlace& place, double width) const;
 

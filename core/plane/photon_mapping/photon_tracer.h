@@ -27,6 +27,11 @@ enum class PhotonPurpose : std::uint8_t {
   kProbes,      // Irradiance on the curves with points.
 };
 
+// Photons are followed on until they have less than this share of the flux that they began with: then the one path
+// tells of several places, which costs a ray each, where a path that ends by chance tells of fewer and costs an
+// emission too.
+inline constexpr double kLeastPhotonShare = 0.125;
+
 // Traces photons, and keeps those that are wanted.
 class PhotonTracer {
  public:

@@ -24,10 +24,26 @@ struct WidthChoice {
   double bias = 0;  // About how far the mean with the chosen width is from the truth, no sign.
 };
 
-// The width whose error is least as far as the densities tell: noise by the spread of replicates, bias by what differs
-// from narrower ones beyond the noise of both (Goldenshluger and Lepski 2011, "Bandwidth selection in kernel density
-// estimation"). Narrow where light changes, wide where it does not, and narrower with more photons.
-WidthChoice ChooseWidth(const WidthLadder& ladder);
+// Chooses the width whose error is least as far as the densities tell: narrow where light changes, wide where it does
+// not, and narrower with more photons. Noise is told by the spread of replicates. Bias shows in what differs from
+// narrower kernels, but of one place that is mostly their noise. So the mean square of differences beyond noise over
+// all places of a curve is what any place has to expect, and what its own differences say counts by how little noise
+// they have (empirical Bayes: Efron and Morris 1973, "Stein's estimation rule and its competitors").
+class WidthChooser {
+ public:
+  // Of places that are alike, before any is chosen for. All have as many widths, and each is as many times as wide.
+  void Add(const WidthLadder& ladder);
+  // For one of them.
+  WidthChoice Choose(const WidthLadder& ladder) const;
+
+ private:
+  // The bias of other widths is looked for in this many narrower ones.
+  static constexpr std::size_t kReach = 5;
+
+  // Sums over places: squares of differences between a width and the narrower ones in reach, less their noise.
+  std::vector<std::array<double, kReach>> beyond_noise_;
+  double places_ = 0;
+};
 
 }  // namespace flatlight
 

@@ -121,6 +121,14 @@ TEST(PhotonMappingTest, AnEvenlyLitSegmentReadsConstantUpToItsEnds) {
   }
 }
 
+// Paths do not end by chance before little of their flux is left: 0.6^4 is more than 1/8.
+TEST(PhotonMappingTest, PhotonsAreFollowedOn) {
+  Settings settings = Photons(1000, false);
+  settings.max_bounces = 4;
+  const auto field = Render(SquareRoom({.reflectance = {0.6}, .radiance = {1}}, 4).Build(), settings).field;
+  EXPECT_EQ(field->rays, 5000);
+}
+
 // All flux that is sent out arrives, and again as much of it as is reflected.
 TEST(PhotonMappingTest, FluxIsConserved) {
   const auto scene = SquareRoom({.reflectance = {0.75}, .radiance = {1}}, 400).Build();
@@ -165,6 +173,19 @@ TEST(PhotonMappingTest, AgreesWithTheReference) {
       EXPECT_LT(deviation.mean_square, gather ? 1.3 : 3) << gather;
       EXPECT_LT(deviation.largest, gather ? 6 : 12) << gather;
     }
+  }
+}
+
+// Few photons tell little of what they miss, and a standard error is small where a kernel is wide.
+TEST(PhotonMappingTest, StatedErrorsHoldForFewPhotons) {
+  const auto scene = DividedRoom(20).Build();
+  const std::vector<double> truth = Reference(scene);
+  constexpr int kSeeds = 6;
+  for (const std::uint32_t photons : {100, 800, 6400}) {
+    double mean_square = 0;
+    for (std::uint32_t seed = 0; seed < kSeeds; ++seed)
+      mean_square += DeviationFrom(truth, *Render(scene, Photons(photons, false, seed)).field).mean_square / kSeeds;
+    EXPECT_LT(mean_square, 1.6) << photons;
   }
 }
 
@@ -358,20 +379,23 @@ TEST(PhotonMappingTest, GradientsAgreeWithTheReference) {
   reference.method = Method::kReference;
   reference.derivatives = Derivatives::kGradient;
   const std::vector<double> truth = All(*Render(scene, reference).field, &ProbeField::gradient);
-  Settings settings = Photons(200000, true);
-  settings.samples = 4096;
-  const auto field = Render(scene, settings).field;
-  const std::vector<double> gradient = All(*field, &ProbeField::gradient);
-  const std::vector<double> error = All(*field, &ProbeField::gradient_error);
-  double z_square = 0, size = 0, off = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const double z = (gradient[i] - truth[i]) / error[i];
-    z_square += z * z / static_cast<double>(truth.size());
-    size += truth[i] * truth[i];
-    off += (gradient[i] - truth[i]) * (gradient[i] - truth[i]);
+  // Of few rays the error is that of their distance, which the spread of maps does not tell.
+  for (const std::uint32_t rays : {512, 4096}) {
+    Settings settings = Photons(200000, true);
+    settings.samples = rays;
+    const auto field = Render(scene, settings).field;
+    const std::vector<double> gradient = All(*field, &ProbeField::gradient);
+    const std::vector<double> error = All(*field, &ProbeField::gradient_error);
+    double z_square = 0, size = 0, off = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const double z = (gradient[i] - truth[i]) / error[i];
+      z_square += z * z / static_cast<double>(truth.size());
+      size += truth[i] * truth[i];
+      off += (gradient[i] - truth[i]) * (gradient[i] - truth[i]);
+    }
+    EXPECT_LT(z_square, 2.5) << rays;
+    EXPECT_LT(std::sqrt(off / size), rays < 4096 ? 0.1 : 0.03) << rays;
   }
-  EXPECT_LT(z_square, 6);
-  EXPECT_LT(std::sqrt(off / size), 0.03);
 }
 
 TEST(PhotonMappingTest, ThreadsAndSlicesLeaveNoTrace) {

@@ -180,7 +180,7 @@ TEST(WidthChoiceTest, WidthsFollowTheLight) {
   constexpr std::size_t kEach = 2000;
   const auto bright_half = [&](double u) { return (u < 0.9 ? u / 1.8 : 0.5 + (u - 0.9) / 0.2) * line.length; };
   const PhotonMaps maps(line.stretches, Strewn(kEach, line.side, 5, bright_half), OnePath(), options, line.executor, 1);
-  const auto choose = [&](double fraction) {
+  const auto ladder_at = [&](double fraction) {
     WidthLadder ladder;
     const SidePlace place{line.side, fraction * line.length};
     ladder.widest = maps.Widest(place);
@@ -191,13 +191,18 @@ TEST(WidthChoiceTest, WidthsFollowTheLight) {
       for (std::size_t r = 0; r < kReplicates; ++r)
         densities[r] = maps.Density(r, maps.WindowOf(place, width), PhotonMaps::Width::kFirst, kAny)[0];
     }
-    return ladder.widest / std::pow(WidthLadder::kRatio, ChooseWidth(ladder).chosen) / line.length;
+    return ladder;
   };
-  EXPECT_GT(choose(0.2), 0.15);
+  WidthChooser chooser;
+  for (int i = 0; i < 40; ++i) chooser.Add(ladder_at((i + 0.5) / 40));
+  const auto choose = [&](double fraction) {
+    const WidthLadder ladder = ladder_at(fraction);
+    return ladder.widest / std::pow(WidthLadder::kRatio, chooser.Choose(ladder).chosen) / line.length;
+  };
+  EXPECT_GT(choose(0.2), 0.1);
   EXPECT_GT(choose(0.8), 0.12);
-  EXPECT_LT(choose(0.47), 0.09);
-  EXPECT_LT(choose(0.53), 0.09);
-  EXPECT_LT(choose(0.495), 0.03);
+  EXPECT_LT(choose(0.47), 0.03);
+  EXPECT_LT(choose(0.53), 0.03);
 }
 
 }  // namespace
