@@ -5,20 +5,22 @@
 
 namespace flatlight {
 
-std::shared_ptr<const RayCaster> IndexCache::For(const std::shared_ptr<const Scene>& scene) {
-  if (auto caster = Find(*scene)) return caster;
+std::shared_ptr<const RayCaster> IndexCache::For(const std::shared_ptr<const Scene>& scene,
+                                                 const std::string& sharers) {
+  if (auto caster = Find(*scene, sharers)) return caster;
   // Without the lock: others need not wait. Two threads may do the same work; either's result is right.
   std::shared_ptr<const RayCaster> caster;
-  if (const auto similar = FindSimilar(*scene)) caster = similar->Refit(scene);
+  if (const auto similar = FindSimilar(*scene, sharers)) caster = similar->Refit(scene);
   if (!caster) caster = std::make_shared<const RayCaster>(scene);
-  Keep({caster, nullptr, std::nullopt});
+  Keep({sharers, caster, nullptr, std::nullopt});
   return caster;
 }
 
-std::shared_ptr<const Triangulation> IndexCache::TrianglesFor(const std::shared_ptr<const Scene>& scene) {
+std::shared_ptr<const Triangulation> IndexCache::TrianglesFor(const std::shared_ptr<const Scene>& scene,
+                                                              const std::string& sharers) {
   {
     const std::lock_guard lock(mutex_);
-    const auto found = Position(*scene);
+    const auto found = Position(*scene, sharers);
     // Free points have a part in how well coordinates are known.
     if (found != entries_.end() && found->triangulation &&
         found->triangulation->coordinate_error() == scene->coordinate_error()) {
@@ -31,7 +33,7 @@ std::shared_ptr<const Triangulation> IndexCache::TrianglesFor(const std::shared_
   Entry entry;
   {
     const std::lock_guard lock(mutex_);
-    const auto found = Position(*scene);
+    const auto found = Position(*scene, sharers);
     if (found == entries_.end()) return triangulation;
     if (!triangulation) {
       found->none = scene->coordinate_error();
@@ -47,27 +49,27 @@ std::shared_ptr<const Triangulation> IndexCache::TrianglesFor(const std::shared_
   return triangulation;
 }
 
-IndexCache::Entries::iterator IndexCache::Position(const Scene& scene) {
+IndexCache::Entries::iterator IndexCache::Position(const Scene& scene, const std::string& sharers) {
   // The world's hash does not tell where free points moved the frame of a world without curves.
   return std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
     const Scene& other = entry.caster->scene();
-    return other.world_hash() == scene.world_hash() && other.elements().size() == scene.elements().size() &&
-           !scene.elements().empty();
+    return entry.sharers == sharers && other.world_hash() == scene.world_hash() &&
+           other.elements().size() == scene.elements().size() && !scene.elements().empty();
   });
 }
 
-std::shared_ptr<const RayCaster> IndexCache::Find(const Scene& scene) {
+std::shared_ptr<const RayCaster> IndexCache::Find(const Scene& scene, const std::string& sharers) {
   const std::lock_guard lock(mutex_);
-  const auto found = Position(scene);
+  const auto found = Position(scene, sharers);
   if (found == entries_.end()) return nullptr;
   entries_.splice(entries_.begin(), entries_, found);
   return entries_.front().caster;
 }
 
-std::shared_ptr<const RayCaster> IndexCache::FindSimilar(const Scene& scene) {
+std::shared_ptr<const RayCaster> IndexCache::FindSimilar(const Scene& scene, const std::string& sharers) {
   const std::lock_guard lock(mutex_);
   const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-    return entry.caster->scene().elements().size() == scene.elements().size();
+    return entry.sharers == sharers && entry.caster->scene().elements().size() == scene.elements().size();
   });
   return found == entries_.end() ? nullptr : found->caster;
 }

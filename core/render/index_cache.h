@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "core/plane/ray_caster.h"
 #include "core/plane/triangulation/triangulation.h"
@@ -16,7 +17,9 @@
 namespace flatlight {
 
 // Ray casters and triangulations of the scenes used last, so that jobs on one world share them, and an edited world
-// gets the caster before it refitted; and what is solved of worlds. Safe to use from several threads.
+// gets the caster before it refitted; and what is solved of worlds. Shared only by those who are asked for under the
+// same name of `sharers`: how long a job takes tells nothing of what others have rendered. Safe to use from several
+// threads.
 class IndexCache {
  public:
   // Keeps casters of scenes of at most so many elements in all, triangulations counted by their memory as elements of
@@ -25,10 +28,11 @@ class IndexCache {
       : max_elements_(max_elements), solved_(std::make_shared<SolvedWorlds>(max_solved_bytes)) {}
 
   // A caster whose scene has the world of `scene`: the same curves, elements and coordinates.
-  std::shared_ptr<const RayCaster> For(const std::shared_ptr<const Scene>& scene);
+  std::shared_ptr<const RayCaster> For(const std::shared_ptr<const Scene>& scene, const std::string& sharers = "");
 
   // A triangulation of the scene's world; null where there can be none (see Triangulation::Of).
-  std::shared_ptr<const Triangulation> TrianglesFor(const std::shared_ptr<const Scene>& scene);
+  std::shared_ptr<const Triangulation> TrianglesFor(const std::shared_ptr<const Scene>& scene,
+                                                    const std::string& sharers = "");
 
   const std::shared_ptr<SolvedWorlds>& solved_worlds() const { return solved_; }
 
@@ -36,6 +40,7 @@ class IndexCache {
 
  private:
   struct Entry {
+    std::string sharers;
     std::shared_ptr<const RayCaster> caster;
     std::shared_ptr<const Triangulation> triangulation;  // Made when it is first wanted.
     std::optional<double> none;  // The coordinates' accuracy with which there can be no triangulation.
@@ -46,10 +51,10 @@ class IndexCache {
   };
   using Entries = std::list<Entry>;
 
-  std::shared_ptr<const RayCaster> Find(const Scene& scene);
-  Entries::iterator Position(const Scene& scene);  // With the lock.
+  std::shared_ptr<const RayCaster> Find(const Scene& scene, const std::string& sharers);
+  Entries::iterator Position(const Scene& scene, const std::string& sharers);  // With the lock.
   // The caster used last that an edit could have led from; null if there is none.
-  std::shared_ptr<const RayCaster> FindSimilar(const Scene& scene);
+  std::shared_ptr<const RayCaster> FindSimilar(const Scene& scene, const std::string& sharers);
   void Keep(Entry entry);
 
   const std::size_t max_elements_;

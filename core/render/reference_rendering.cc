@@ -22,9 +22,10 @@ constexpr double kFirstRound = 0.05;
 
 ReferenceRendering::ReferenceRendering(std::shared_ptr<const Scene> scene,
                                        const std::shared_ptr<const RayCaster>& caster, const Plan& plan,
-                                       std::shared_ptr<SolvedWorlds> worlds)
+                                       std::shared_ptr<SolvedWorlds> worlds, std::string sharers)
     : scene_(std::move(scene)),
       worlds_(std::move(worlds)),
+      sharers_(std::move(sharers)),
       derivatives_(static_cast<int>(plan.settings.derivatives.value_or(Derivatives::kNone))),
       target_error_(*plan.settings.target_error),
       time_limit_(plan.settings.time_limit),
@@ -38,7 +39,7 @@ ReferenceRendering::ReferenceRendering(std::shared_ptr<const Scene> scene,
   options.channels = plan.Takes(skip::kColour) ? 1 : kMaxChannels;
   options.max_bounces = plan.settings.max_bounces;
   options.target_error = target_error_;
-  auto world = worlds_->Take(*scene_, static_cast<std::size_t>(options.channels), options.max_bounces);
+  auto world = worlds_->Take(*scene_, static_cast<std::size_t>(options.channels), options.max_bounces, sharers_);
   solver_.emplace(scene_, caster, options, std::move(world));
 }
 
@@ -57,7 +58,7 @@ void ReferenceRendering::Advance(Executor& executor, const Cancellation& cancell
   solver_->Advance(executor, threads, cancellation, clock, budget);
   if (solver_->state() == ReferenceSolver::State::kReached) {
     end_reason_ = EndReason::kTargetReached;
-    worlds_->Keep(solver_->TakeWorld());
+    worlds_->Keep(solver_->TakeWorld(), sharers_);
   } else if (solver_->state() == ReferenceSolver::State::kExhausted) {
     end_reason_ = EndReason::kAccuracyLimit;
   } else if (time_limit_ && solver_->rounds() > 0 && Seconds(clock.Now() - *start_).count() >= *time_limit_) {

@@ -19,7 +19,7 @@ class ReferenceRendering final : public Rendering {
  public:
   // The caster's scene has the world of `scene`; it may be null where nothing emits.
   ReferenceRendering(std::shared_ptr<const Scene> scene, const std::shared_ptr<const RayCaster>& caster,
-                     const Plan& plan, std::shared_ptr<SolvedWorlds> worlds);
+                     const Plan& plan, std::shared_ptr<SolvedWorlds> worlds, std::string sharers);
 
   void Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
                Clock::Duration budget) override;
@@ -31,6 +31,7 @@ class ReferenceRendering final : public Rendering {
  private:
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<SolvedWorlds> worlds_;
+  std::string sharers_;  // Whose those of `worlds_` may be.
   int derivatives_;
   double target_error_;
   std::optional<double> time_limit_;  // s

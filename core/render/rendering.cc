@@ -16,11 +16,12 @@
 
 namespace flatlight {
 
-std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, const Plan& plan, IndexCache& indexes) {
+std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, const Plan& plan, IndexCache& indexes,
+                                          const std::string& sharers) {
   // In the dark no ray is cast.
-  auto caster = plan.Takes(skip::kEmission) ? nullptr : indexes.For(scene);
+  auto caster = plan.Takes(skip::kEmission) ? nullptr : indexes.For(scene, sharers);
   if (plan.settings.method == Method::kExact) {
-    auto triangulation = plan.triangles ? indexes.TrianglesFor(scene) : nullptr;
+    auto triangulation = plan.triangles ? indexes.TrianglesFor(scene, sharers) : nullptr;
     const bool points = scene->traits().probe_points > 0;
     if (scene->traits().pixels == 0) return std::make_unique<ExactRendering>(scene, caster, triangulation, plan);
     auto pictures = std::make_unique<ExactPictureRendering>(scene, caster, triangulation, plan);
@@ -38,7 +39,7 @@ std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, co
     return std::make_unique<IrradianceCachingRendering>(std::move(scene), std::move(caster), plan);
   }
   if (plan.settings.method == Method::kReference) {
-    return std::make_unique<ReferenceRendering>(std::move(scene), caster, plan, indexes.solved_worlds());
+    return std::make_unique<ReferenceRendering>(std::move(scene), caster, plan, indexes.solved_worlds(), sharers);
   }
   const SceneTraits& traits = scene->traits();
   if (traits.pixels == 0) return std::make_unique<PathTracingRendering>(std::move(scene), std::move(caster), plan);

@@ -51,8 +51,10 @@ class Rendering {
   virtual bool Resume(std::string_view /*checkpoint*/) { return false; }
 };
 
-// `plan` must come from MakePlan for this scene. Takes its index from `indexes`, or makes its own.
-std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, const Plan& plan, IndexCache& indexes);
+// `plan` must come from MakePlan for this scene. Takes its index from `indexes`, what they have for `sharers`, or makes
+// its own.
+std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, const Plan& plan, IndexCache& indexes,
+                                          const std::string& sharers = "");
 std::unique_ptr<Rendering> StartRendering(std::shared_ptr<const Scene> scene, const Plan& plan);
 
 }  // namespace flatlight

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "core/plane/reference/solved_world.h"
 #include "core/scene/scene.h"
@@ -15,8 +16,8 @@
 namespace flatlight {
 
 // What `reference` found about the worlds used last, so that other probes are gathered from what is solved and a
-// smaller target refines it. Who takes one has it alone: another job on that world begins anew meanwhile. Safe to use
-// from several threads.
+// smaller target refines it. Apart for each name of `sharers`, as in IndexCache. Who takes one has it alone: another
+// job on that world begins anew meanwhile. Safe to use from several threads.
 class SolvedWorlds {
  public:
   // Keeps so many bytes; what was used longest ago goes first. Of what is too large by itself the light alone is kept,
@@ -24,17 +25,20 @@ class SolvedWorlds {
   explicit SolvedWorlds(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
   // Of the scene's world, solved for so many channels and bounces; null if there is none.
-  std::unique_ptr<SolvedWorld> Take(const Scene& scene, std::size_t channels, std::optional<std::uint32_t> max_bounces);
+  std::unique_ptr<SolvedWorld> Take(const Scene& scene, std::size_t channels, std::optional<std::uint32_t> max_bounces,
+                                    const std::string& sharers = "");
   // Of two of one world the finer one stays.
-  void Keep(std::unique_ptr<SolvedWorld> world);
+  void Keep(std::unique_ptr<SolvedWorld> world, const std::string& sharers = "");
 
  private:
   struct Entry {
     std::unique_ptr<SolvedWorld> world;
     std::size_t bytes = 0;
+    std::string sharers;
   };
   using Entries = std::list<Entry>;
-  Entries::iterator Position(const Scene& scene, std::size_t channels, std::optional<std::uint32_t> max_bounces);
+  Entries::iterator Position(const Scene& scene, std::size_t channels, std::optional<std::uint32_t> max_bounces,
+                             const std::string& sharers);
 
   const std::size_t max_bytes_;
   std::mutex mutex_;

@@ -54,7 +54,7 @@ struct SchedulerOptions {
 
 class Scheduler {
  public:
-  using Start = std::function<std::unique_ptr<Rendering>(std::shared_ptr<const Scene>, const Plan&)>;
+  using Start = std::function<std::unique_ptr<Rendering>(std::shared_ptr<const Scene>, const JobSpec&)>;
   // Told after each change of a job, from any thread, with no lock held. Must be quick and must not call back.
   using Listener = std::function<void(const JobId&)>;
 

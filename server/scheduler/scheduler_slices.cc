@@ -116,10 +116,10 @@ void Scheduler::PrepareNext() {
 std::unique_ptr<Rendering> Scheduler::StartOrResume(const JobSpec& spec, const std::shared_ptr<const Scene>& scene,
                                                     const std::optional<JobCheckpoint>& checkpoint) const {
   if (checkpoint) {
-    auto rendering = start_(scene, spec.plan);
+    auto rendering = start_(scene, spec);
     if (rendering->Resume(checkpoint->rendering)) return rendering;
   }
-  return start_(scene, spec.plan);
+  return start_(scene, spec);
 }
 
 void Scheduler::MaybeCheckpoint(const RunPtr& run, double cpu_seconds) {

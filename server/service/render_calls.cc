@@ -73,9 +73,8 @@ absl::StatusOr<std::optional<RequestKey>> KeyOf(const Caller& caller, const v1::
       {caller.name, "CreateJob", request.request_id(), Sha256Of(rest.SerializeAsString())});
 }
 
-// With whom a job shares its work: with equal ones that have an equal answer here; nothing: with none.
-std::optional<std::string> Sharers(Backend& backend, const v1::CreateJobRequest& request, const std::string& owner) {
-  if (request.anew()) return std::nullopt;
+// With whom a job may share work, and what is known of its world: with those that have an equal answer here.
+std::string Sharers(Backend& backend, const v1::CreateJobRequest& request, const std::string& owner) {
   if (request.scene().has_name() && request.scene().probes().empty()) {
     if (const auto named = FindScene(request.scene().name(), backend.scenes); named.ok() && named->info.gallery()) {
       return "everybody";
@@ -99,9 +98,9 @@ absl::StatusOr<JobRun::Restored> MakeJob(Backend& backend, const v1::CreateJobRe
   spec.settings = std::move(planned->settings);
   spec.plan = std::move(planned->plan);
   spec.job_key = JobKey(spec, backend.version);
-  const auto sharers = Sharers(backend, request, spec.owner);
+  spec.sharers = Sharers(backend, request, spec.owner);
   // Where a time limit ends a job is never the same.
-  if (sharers && !spec.plan.settings.time_limit) spec.work_key = spec.job_key + ' ' + *sharers;
+  if (!request.anew() && !spec.plan.settings.time_limit) spec.work_key = spec.job_key + ' ' + spec.sharers;
   return JobRun::Restored{std::make_shared<JobSpec>(std::move(spec)), std::move(planned->scene), {}};
 }
 

@@ -214,9 +214,13 @@ struct Server::Parts {
   }
 
   Scheduler::Start StartOf(const ServerOptions& options) {
-    if (options.start_rendering) return options.start_rendering;
-    return [this](std::shared_ptr<const Scene> scene, const Plan& plan) {
-      return StartRendering(std::move(scene), plan, indexes);
+    if (options.start_rendering) {
+      return [start = options.start_rendering](std::shared_ptr<const Scene> scene, const JobSpec& job) {
+        return start(std::move(scene), job.plan);
+      };
+    }
+    return [this](std::shared_ptr<const Scene> scene, const JobSpec& job) {
+      return StartRendering(std::move(scene), job.plan, indexes, job.sharers);
     };
   }
 

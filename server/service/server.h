@@ -4,6 +4,7 @@
 #define FLATLIGHT_SERVER_SERVICE_SERVER_H_
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -27,7 +28,8 @@ struct ServerOptions {
   std::string log;              // A file for a line about each call, or "-"; empty: none.
   std::chrono::milliseconds checkpoint_interval{3000};  // Of a job, at least. With `data`.
   std::chrono::milliseconds heartbeat{10'000};          // Between messages of a watch on which nothing happens.
-  Scheduler::Start start_rendering;  // Tests give their own; else StartRendering, on indexes that jobs share.
+  // Tests give their own; else StartRendering, on indexes that jobs share (JobSpec::sharers).
+  std::function<std::unique_ptr<Rendering>(std::shared_ptr<const Scene>, const Plan&)> start_rendering;
 };
 
 class Server {

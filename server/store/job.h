@@ -31,6 +31,8 @@ struct JobSpec {
   Settings settings;                          // As requested.
   Plan plan;
   std::string job_key;  // Names what decides the bits of the result. Not known of a job that waits to be restored.
+  // With whom it may share indexes and what is solved of its world: with jobs of the same name here.
+  std::string sharers;
   // Jobs of equal ones do the same work, and may tell of each other by sharing it. Empty: this one does its own.
   std::string work_key;
   std::optional<std::string> records_checksum;  // Of those that the request brought.

@@ -45,6 +45,17 @@ TEST(IndexCacheTest, OneWorldHasOneIndexWhateverItsProbes) {
   EXPECT_EQ(cache.For(Rows(0, 8)), caster) << "both are kept";
 }
 
+TEST(IndexCacheTest, NothingIsSharedWithOthers) {
+  IndexCache cache(1000);
+  const auto ada = cache.For(Rows(0, 8), "ada");
+  const auto ada_triangles = cache.TrianglesFor(Rows(0, 8), "ada");
+  ASSERT_NE(ada_triangles, nullptr);
+  EXPECT_NE(cache.For(Rows(0, 8), "bob"), ada);
+  EXPECT_NE(cache.TrianglesFor(Rows(0, 8), "bob"), ada_triangles);
+  EXPECT_EQ(cache.For(Rows(0, 64), "ada"), ada);
+  EXPECT_EQ(cache.TrianglesFor(Rows(0, 8), "ada"), ada_triangles);
+}
+
 TEST(IndexCacheTest, AnEditedWorldIsMetAsItIs) {
   IndexCache cache(1000);
   cache.For(Rows(0, 8));

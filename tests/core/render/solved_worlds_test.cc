@@ -49,8 +49,10 @@ struct Job {
   std::size_t loops = 0;  // Of panels, points or equations.
 };
 
-Job Finish(const std::shared_ptr<const Scene>& scene, double target, IndexCache& indexes) {
-  const std::unique_ptr<Rendering> rendering = StartRendering(scene, PlanFor(*scene, Reference(target)), indexes);
+Job Finish(const std::shared_ptr<const Scene>& scene, double target, IndexCache& indexes,
+           const std::string& sharers = "") {
+  const std::unique_ptr<Rendering> rendering =
+      StartRendering(scene, PlanFor(*scene, Reference(target)), indexes, sharers);
   CountingExecutor executor;
   const SteadyClock clock;
   const Cancellation never;
@@ -86,6 +88,16 @@ TEST(SolvedWorldsTest, TheSameJobHasTheSameBits) {
   const Job job = Finish(scene, 1e-4, kept), again = Finish(scene, 1e-4, kept);
   EXPECT_LT(4 * again.loops, job.loops);
   EXPECT_EQ(HashOf(*again.ended.field), HashOf(*job.ended.field));
+}
+
+TEST(SolvedWorldsTest, WhatIsSolvedForOthersIsNotUsed) {
+  const auto scene = FurnishedRoom(false, 6).Build();
+  IndexCache kept(1000, kPlenty), none(1000);
+  const Job ada = Finish(scene, 1e-4, kept, "ada"), bob = Finish(scene, 1e-4, kept, "bob");
+  EXPECT_EQ(bob.loops, ada.loops);
+  EXPECT_EQ(HashOf(*bob.ended.field), HashOf(*Finish(scene, 1e-4, none).ended.field));
+  EXPECT_LT(4 * Finish(scene, 1e-4, kept, "ada").loops, ada.loops);
+  EXPECT_LT(4 * Finish(scene, 1e-4, kept, "bob").loops, ada.loops);
 }
 
 TEST(SolvedWorldsTest, ASmallerTargetRefines) {

@@ -33,7 +33,7 @@ class SchedulerFixture : public ::testing::Test {
   void MakeScheduler(SchedulerOptions options = {}) {
     scheduler_ = std::make_unique<Scheduler>(
         options, store_, pool_, clock_,
-        [this](std::shared_ptr<const Scene> scene, const Plan& plan) { return renderings_.Start(scene, plan); },
+        [this](std::shared_ptr<const Scene> scene, const JobSpec& job) { return renderings_.Start(scene, job.plan); },
         [this](const JobId&) {
           const std::lock_guard lock(mutex_);
           changed_.notify_all();
