@@ -20,6 +20,7 @@
 #include "server/service/backend.h"
 #include "server/service/build_version.h"
 #include "server/service/call_telemetry.h"
+#include "server/service/connection_limits.h"
 #include "server/service/job_format.h"
 #include "server/service/listen_address.h"
 #include "server/service/render_calls.h"
@@ -318,10 +319,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   int port = 0;
   builder.AddListeningPort(address->ToString(address->port), parts->NewCredentials(), &port);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-  // Clients may ping an idle connection every 10 s.
-  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
-  builder.SetMaxReceiveMessageSize(static_cast<int>(options.limits.max_message_bytes));
+  SetConnectionLimits(builder, options.limits, options.keepalive);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(parts->telemetry.MakeFactory());
   builder.experimental().SetInterceptorCreators(std::move(interceptors));

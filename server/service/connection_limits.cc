@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/connection_limits.h"
+
+#include "grpcpp/resource_quota.h"
+
+namespace flatlight {
+namespace {
+
+constexpr std::size_t kMemoryBytes = 512u << 20;  // Of gRPC's buffers; a thousand watchers take an eighth.
+constexpr int kMaxMetadataBytes = 16 << 10;
+constexpr int kMaxStreams = 1000;  // Of one connection.
+
+}  // namespace
+
+void SetConnectionLimits(grpc::ServerBuilder& builder, const Limits& limits, std::chrono::milliseconds keepalive) {
+  builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_message_bytes));
+  builder.SetResourceQuota(grpc::ResourceQuota("flatlightd").Resize(kMemoryBytes));
+  builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, kMaxMetadataBytes);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaxStreams);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, static_cast<int>(keepalive.count()));
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, static_cast<int>(keepalive.count()));
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);  // As many as are due.
+  // Clients may ping an idle connection every 10 s.
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);
+}
+
+}  // namespace flatlight
