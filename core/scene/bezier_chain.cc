@@ -106,18 +106,19 @@ class ChainMaker {
     double from = 0;
     for (int i = 0; i <= turns.count; ++i) {
       const double to = i < turns.count ? turns.at[i] : 1;
-      AddSegment(from, to, false);
+      AddSegment(from, to);
       from = to;
     }
   }
 
-  void AddSegment(double from, double to, bool bends) {
+  void AddSegment(double from, double to) {
     BezierChain::Piece piece;
     piece.element.a = bezier_.At(from), piece.element.b = bezier_.At(to);
     piece.on.from = from, piece.on.to = to;
-    piece.on.bends = bends;
-    piece.element.length = Length(piece.element.b - piece.element.a);
-    if (piece.element.length > 0) chain_.pieces.push_back(piece);
+    // A cusp's tip is longer than its chord.
+    const bool straight = bezier_.IsStraight();
+    piece.element.length = straight ? Length(piece.element.b - piece.element.a) : bezier_.Length(from, to);
+    if (piece.element.a != piece.element.b) chain_.pieces.push_back(piece);
   }
 
   // As long steps as the tolerance allows: the distance of a pair grows by the third power of its step.
@@ -133,7 +134,7 @@ class ChainMaker {
         step = (next - from) * std::clamp(growth, 0.5, 4.0);
         from = next;
       } else if (next - from <= kLeastStep || IsSmall(from, next)) {
-        AddSegment(from, next, false);
+        AddSegment(from, next);
         from = next;
       } else {
         step = (next - from) * std::clamp(growth, 0.25, 0.8);
@@ -230,6 +231,28 @@ void PlaceOnBezier(const Element& element, const Bezier& bezier, double u, doubl
   receiver.curvature = sign * bezier.Curvature(u);
   receiver.curvature_change = sign * bezier.CurvatureChange(u);
   receiver.curvature_second = sign * bezier.CurvatureChangeChange(u);
+}
+
+void BoundPlaceOnBezier(const Bezier& bezier, double u, double along, double coordinate_error, Receiver& receiver) {
+  const Vector2 first = bezier.First(u), second = bezier.Second(u), third = bezier.Third();
+  const double f = Length(first), s = Length(second), t = Length(third);
+  // The terms that the derivatives are sums of round to their own sizes: where the curve all but stands still, these
+  // are what counts.
+  const double a = Length(bezier.p[1] - bezier.p[0]), b = Length(bezier.p[2] - bezier.p[1]),
+               c = Length(bezier.p[3] - bezier.p[2]), v = 1 - u;
+  constexpr double kRoundoffs = 8 * kUnitRoundoff;
+  const double df = 6 * coordinate_error + kRoundoffs * 3 * (v * v * a + 2 * u * v * b + u * u * c);
+  const double ds = 24 * coordinate_error + kRoundoffs * 6 * (v * (a + b) + u * (b + c));
+  const double dt = 48 * coordinate_error + kRoundoffs * 6 * (a + 2 * b + c);
+  const double k = std::abs(receiver.curvature), change = std::abs(receiver.curvature_change);
+  const double squared = f * f, cross = k * squared * f, dcross = df * s + f * ds;
+  const double place = along + 4 * kUnitRoundoff * f;
+  receiver.displaced = place;
+  receiver.tilt = 2 * (df / f + k * place);
+  receiver.curvature_error = 2 * (dcross / (squared * f) + 3 * k * df / f + change * place);
+  const double dproduct = dcross * s / f + cross * dcross / squared + 2 * cross * s / f * df / f;
+  receiver.curvature_change_error = 2 * ((df * t + f * dt + 3 * dproduct) / (squared * squared) + 4 * change * df / f +
+                                         std::abs(receiver.curvature_second) * place);
 }
 
 double NearestOnBezier(const Bezier& bezier, Point2 point, double low, double high, double guess) {

@@ -28,6 +28,10 @@ BezierChain MakeBezierChain(const Bezier& bezier, double tolerance);
 // front (sign +1) or the back (-1). Its position is the point of the piece beside that of the curve.
 void PlaceOnBezier(const Element& element, const Bezier& bezier, double u, double sign, Receiver& receiver);
 
+// Bounds what the place and the frame of such a receiver may be off by, if its arc length is known to `along` and
+// control points to `coordinate_error`.
+void BoundPlaceOnBezier(const Bezier& bezier, double u, double along, double coordinate_error, Receiver& receiver);
+
 // The parameter in [low, high] at which a Bézier is nearest to a point, from a guess.
 double NearestOnBezier(const Bezier& bezier, Point2 point, double low, double high, double guess);
 

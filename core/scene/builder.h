@@ -36,6 +36,8 @@ class SceneBuilder {
   void AddCurveProbe(const ProbeDescription& description, Probe& probe) const;
   // The element of a curve at an arc length; kNone where another curve covers it.
   ElementId ElementAt(const Curve& curve, double arc_length) const;
+  // Bound on what arc length along a Bézier is off by; 0 of other curves.
+  double LengthError(std::size_t curve) const;
   void AddCamera(const CameraDescription& camera, Probe& probe);
   void AddPointProbe(const ProbeDescription& description, Probe& probe);
   void Summarise();

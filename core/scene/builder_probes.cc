@@ -62,6 +62,21 @@ ElementId SceneBuilder::ElementAt(const Curve& curve, double arc_length) const {
   return static_cast<ElementId>(element - scene_->elements_.begin());
 }
 
+double SceneBuilder::LengthError(std::size_t curve) const {
+  double error = 0, length = 0;
+  for (std::uint32_t e = first_piece_[curve]; e < first_piece_[curve + 1]; ++e) {
+    const Element& piece = pieces_[e];
+    const BezierPiece* on = scene_->bezier_piece(piece);
+    if (on == nullptr) return 0;
+    // A quadrature rule of this degree in halves has all but none of its error.
+    const Bezier& bezier = scene_->beziers_[on->bezier];
+    const double middle = 0.5 * (on->from + on->to);
+    error += std::abs(piece.length - (bezier.Length(on->from, middle) + bezier.Length(middle, on->to)));
+    length += piece.length;
+  }
+  return 2 * error + 16 * kUnitRoundoff * length;
+}
+
 void SceneBuilder::AddCurveProbe(const ProbeDescription& description, Probe& probe) const {
   std::size_t c = 0;
   while (scene_->curves_[c].name != *description.curve) ++c;
@@ -72,6 +87,7 @@ void SceneBuilder::AddCurveProbe(const ProbeDescription& description, Probe& pro
   const double from = description.from.value_or(0);
   const double to = description.to.value_or(1);
   const double side = description.side.value_or(Side::kFront) == Side::kBack ? -1 : 1;
+  const double length_error = LengthError(c);
   for (std::uint32_t i = 0; i < *description.count; ++i) {
     const double fraction = from + (i + 0.5) / *description.count * (to - from);
     Receiver receiver;
@@ -83,12 +99,20 @@ void SceneBuilder::AddCurveProbe(const ProbeDescription& description, Probe& pro
     const ElementFrame frame = FrameAt(*piece, last - first == 1 ? fraction : local);
     if (const BezierPiece* on = scene_->bezier_piece(*piece); on != nullptr && on->bends) {
       const Bezier& bezier = scene_->beziers_[on->bezier];
-      PlaceOnBezier(*piece, bezier, bezier.AtLength(local * piece->length, on->from, on->to), side, receiver);
+      const double u = bezier.AtLength(local * piece->length, on->from, on->to);
+      PlaceOnBezier(*piece, bezier, u, side, receiver);
+      BoundPlaceOnBezier(bezier, u, length_error, scene_->coordinate_error_, receiver);
     } else {
       receiver.position = frame.position;
       receiver.tangent = frame.tangent;
       receiver.normal = side * frame.normal;
       receiver.curvature = side * frame.curvature;
+      if (on != nullptr && !scene_->beziers_[on->bezier].IsStraight()) {
+        // The tip of a cusp, as good as a point: it turns any way on it.
+        receiver.displaced = piece->length + length_error;
+        receiver.tilt = 2, receiver.curvature_error = 2 / piece->length;
+        receiver.curvature_change_error = 2 / (piece->length * piece->length);
+      }
     }
     receiver.element = ElementAt(curve, receiver.arc_length);
     probe.receivers.push_back(receiver);

@@ -91,7 +91,11 @@ struct Receiver {
   double curvature_second = 0;           // and its derivative.
   ElementId element = ElementId::kNone;  // The piece it lies on.
   double arc_length = 0;
-  double displaced = 0;  // How far from where the author put it: see kLiftTouches.
+  double displaced = 0;  // How far from where the author put it: see kLiftTouches. On a Bézier, bound on it.
+  // Bounds on errors beyond rounding, on a Bézier: of the tangent's angle, of the curvature, of its change.
+  double tilt = 0;
+  double curvature_error = 0;
+  double curvature_change_error = 0;
   // 0: irradiance, from the half circle. In (0, pi/2]: radiance summed up by angle, so far to both sides of the normal.
   double half_angle = 0;
 };

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/bezier_chain.h"
+
 namespace flatlight {
 namespace {
 
@@ -48,6 +50,7 @@ Edge TrueEdge(const Scene& scene, const Receiver& receiver, const Edge& edge) {
   found.crossing = edge.crossing;
   found.turn = edge.turn, found.stretch = edge.stretch;
   if (on == nullptr || !on->bends) return found;
+  found.radius_error = std::abs(edge.signed_radius);  // If nothing better is found.
   const Bezier& bezier = scene.beziers()[on->bezier];
   const Vector2 chord = element->b - element->a;
   const double share = Dot(edge.point - element->a, chord) / LengthSquared(chord);
@@ -70,6 +73,16 @@ Edge TrueEdge(const Scene& scene, const Receiver& receiver, const Edge& edge) {
   // At an inflection, and where the curve stands still, the arc's.
   const double radius = std::abs(1 / bezier.Curvature(u));
   found.signed_radius = std::isfinite(radius) ? std::copysign(radius, edge.signed_radius) : edge.signed_radius;
+  found.radius_error = std::abs(found.signed_radius);
+  if (!std::isfinite(radius)) return found;
+  // The place slides by as much as the direction is off.
+  Receiver there;
+  there.curvature = bezier.Curvature(u), there.curvature_change = bezier.CurvatureChange(u);
+  const double coordinate_error = scene.coordinate_error() + receiver.displaced;
+  const double slides = radius * (2 * coordinate_error * found.q + receiver.tilt + 4 * kUnitRoundoff);
+  BoundPlaceOnBezier(bezier, u, slides, scene.coordinate_error(), there);
+  const double error = radius * radius * there.curvature_error;
+  if (std::isfinite(error)) found.radius_error = error;
   return found;
 }
 

@@ -32,6 +32,7 @@ struct Edge {
   // Bounds on errors beyond those of the coordinates: of theta, and of the distance, relative.
   double turn = 0;
   double stretch = 0;
+  double radius_error = 0;               // Of signed_radius.
   Point2 point;                          // Not at the horizon.
   ElementId element = ElementId::kNone;  // Silhouettes: the arc.
   bool crossing = false;                 // Vertices: where two curves cross.
@@ -67,7 +68,7 @@ inline void SetVertexEdge(double tangent, double normal, Point2 point, Edge& edg
   edge.q = 1 / std::sqrt(tangent * tangent + normal * normal);
   edge.s = tangent * edge.q;
   edge.c = normal * edge.q;
-  edge.signed_radius = edge.turn = edge.stretch = 0;
+  edge.signed_radius = edge.turn = edge.stretch = edge.radius_error = 0;
   edge.point = point;
 }
 

@@ -13,6 +13,17 @@ namespace {
 // How much farther away, relative, is behind for certain.
 constexpr double kBehind = 1e-6;
 
+// What curvatures are off by, the receiver's and at a touching point, in the derivatives of an edge's sine (Derive).
+void AddCurvatureErrors(const Edge& edge, const Receiver& receiver, EdgeErrors& errors) {
+  if (edge.kind == Edge::Kind::kHorizon) return;
+  const double c = std::abs(edge.c), s = std::abs(edge.s), error = receiver.curvature_error;
+  const double turning = std::abs(receiver.curvature - edge.c * edge.q);
+  errors.s_first += c * error;
+  errors.s_second += c * (receiver.curvature_change_error + s * edge.q * error) + s * (2 * turning + error) * error;
+  const double cq = c * edge.q;
+  errors.s_second += cq * cq * cq * edge.radius_error;
+}
+
 // Adds up light while a ray turns from horizon to horizon.
 template <int kChannels>
 class LightSum {
@@ -49,7 +60,9 @@ class LightSum {
     }
     if (receiver_.half_angle > 0) return TurnByAngle(after, coordinate_error);
     const Edge& begin = edges_[1 - next_];
-    const EdgeErrors errors = BoundErrors(edge, receiver_.curvature, coordinate_error, receiver_.curvature_change);
+    edge.turn += receiver_.tilt;
+    EdgeErrors errors = BoundErrors(edge, receiver_.curvature, coordinate_error, receiver_.curvature_change);
+    if (!is_true_) AddCurvatureErrors(edge, receiver_, errors);
     const EdgeDerivatives derivatives =
         derivatives_ > 0 ? Derive(edge, receiver_.curvature, receiver_.curvature_change) : EdgeDerivatives{};
     const double extent = lit_ ? SineDifference(begin, edge, receiver_) : 0;
@@ -301,6 +314,15 @@ void ExactSolver::AddUndecided(const std::vector<VisibleInterval>& intervals, st
   if (i == 0) return;
   const Edge& before = intervals[i - 1].begin;
   Edge edge = intervals[i].begin;
+  // One that ends before it begins: coordinates don't tell the directions of its edges apart, and what is between them
+  // is lit or not. Derivatives are those of the order that edges have just beyond the receiver.
+  if (edge.key < before.key) {
+    for (int channel = 0; channel < kChannels; ++channel) {
+      value.irradiance_error[channel] +=
+          brightest_[channel] * (receiver.half_angle > 0 ? 2 * (before.key - edge.key) : std::abs(before.s - edge.s));
+      if (options_.derivatives >= 1) value.rotation_error[channel] += brightest_[channel] * std::abs(before.c - edge.c);
+    }
+  }
   if (edge.kind == Edge::Kind::kHorizon || edge.kind == Edge::Kind::kTouch) return;
   // Ends are known as coordinates are, however flat the angle at which curves meet there.
   edge.turn = edge.stretch = 0;

@@ -15,10 +15,16 @@ Vector2 BendAt(const Element& element, Vector2 front) {
   return element.Orientation() / element.radius * front;
 }
 
+// How far an element is from what it stands for.
+double BezierDistance(const Scene& scene, const Element& element) {
+  const BezierPiece* const on = scene.bezier_piece(element);
+  return on == nullptr ? 0 : on->distance;
+}
+
 }  // namespace
 
 void AddMeetingError(const Scene& scene, const Receiver& receiver, const Element& e, const Element& f, Edge& edge) {
-  const double apart = 4 * scene.coordinate_error();
+  const double apart = 4 * scene.coordinate_error() + BezierDistance(scene, e) + BezierDistance(scene, f);
   const Vector2 front_e = FrontNormal(e, edge.point), front_f = FrontNormal(f, edge.point);
   const double sine = std::abs(Cross(front_e, front_f));
   const double bend = Length(BendAt(e, front_e) - BendAt(f, front_f));

@@ -443,5 +443,22 @@ TEST(DegenerateTest, ASlitAsNarrowAsRoundingHasItsDerivativesInTheBounds) {
   EXPECT_LT(value.hessian_error, 1e-1);
 }
 
+// A receiver of a few atoms, hollow: its own end is so near that its direction and those of the lamp's ends are one to
+// the accuracy of coordinates. What it hides if it is is in the bound.
+TEST(DegenerateTest, ALampNearTheHorizonOfAReceiverOfAFewAtoms) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene, ArcDescription{{-0.107, 0.853}, 3.48e-05, -6.62, -1e-09});
+  AddCurve(scene, SegmentDescription{{-0.64, -0.58}, {-0.64, -0.581}}, 1);
+  const WorldValue value = ValueOf(Probe(scene, 0, 0, 1, Side::kBack));
+  // The sine of the lamp's ends; its own arc hides nothing so high.
+  const Point2 at{-0.107 + 3.48e-05 * std::cos(-6.62), 0.853 + 3.48e-05 * std::sin(-6.62)};
+  const auto sine = [&](Point2 p) {
+    const Vector2 to = p - at;
+    return Cross(Vector2{std::cos(-6.62), std::sin(-6.62)}, to) / Length(to);
+  };
+  EXPECT_NEAR(value.irradiance, std::abs(sine({-0.64, -0.58}) - sine({-0.64, -0.581})), value.irradiance_error);
+  EXPECT_LT(value.irradiance_error, 1e-3);
+}
+
 }  // namespace
 }  // namespace flatlight
