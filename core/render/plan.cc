@@ -234,10 +234,16 @@ std::string Summary(const Scene& scene, const Plan& plan) {
     if (seen > 0) text += (others > 0 ? " and " : "") + std::to_string(seen) + " pixels of cameras";
   }
   if (pixels > 0) text += (points > 0 ? " and in " : "") + std::to_string(pixels) + " pixels";
-  if (plan.settings.method == Method::kPhotonMapping) return text + HowPhotonsTell(scene, plan.settings) + ".";
-  if (plan.settings.method == Method::kIrradianceCaching) {
-    text += HowRecordsTell(plan.settings, plan.Takes(skip::kBounces));
-  } else if (plan.settings.method != Method::kExact) {
+  if (plan.settings.method == Method::kPhotonMapping || plan.settings.method == Method::kIrradianceCaching) {
+    const bool cached = plan.settings.method == Method::kIrradianceCaching;
+    text += cached ? HowRecordsTell(plan.settings, plan.Takes(skip::kBounces)) : HowPhotonsTell(scene, plan.settings);
+    const bool closed_form = !cached && *plan.settings.final_gather;
+    // Measured in the gallery with 256 to 65536 points.
+    if (!closed_form && DirectLightOnly(scene, plan.settings) && !plan.Takes(skip::kEmission))
+      text += "; the method exact would be done sooner, with no error but rounding";
+    return text + ".";
+  }
+  if (plan.settings.method != Method::kExact) {
     const bool branching = plan.settings.method == Method::kRayTracing;
     if (plan.settings.samples.has_value()) {
       text += ", at most " + Text(plan.passes[0].samples) + (branching ? " branching rays each" : " paths each");

@@ -244,6 +244,21 @@ TEST(PlanTest, SummarySaysWhatWillBeDone) {
             "Path tracing of up to 1 bounce at 20 points, at most 64 paths each, until the error is 1 %, for 5 s.");
 }
 
+TEST(PlanTest, SummarySaysWhereExactWouldDo) {
+  const std::string exact = "; the method exact would be done sooner, with no error but rounding.";
+  const auto summary = [](const Scene& scene, Method method, std::optional<bool> gather = {}) {
+    Settings settings;
+    settings.method = method;
+    settings.final_gather = gather;
+    return PlanFor(scene, settings).summary;
+  };
+  EXPECT_THAT(summary(*Black(), Method::kIrradianceCaching), testing::EndsWith(exact));
+  EXPECT_THAT(summary(*Black(), Method::kPhotonMapping, false), testing::EndsWith(exact));
+  for (const Method method : {Method::kIrradianceCaching, Method::kPhotonMapping})
+    EXPECT_THAT(summary(*Reflecting(), method), testing::Not(testing::HasSubstr("exact")));
+  EXPECT_THAT(summary(*Black(), Method::kPhotonMapping, true), testing::EndsWith(", all of it in closed form."));
+}
+
 TEST(PlanTest, TrianglesWhereTheyPay) {
   const auto rows = [](int curves, std::uint32_t points, bool arc = false) {
     SceneMaker maker;

@@ -100,6 +100,15 @@ TEST(PlacementTrialTest, HessiansPlaceBetterBesideWalls) {
   }
 }
 
+// Jarosz et al. 2012 report up to 7 times less error at equal numbers of records.
+TEST(PlacementTrialTest, HessiansReachWhatIsReported) {
+  for (const std::size_t records : {12, 20, 24})
+    EXPECT_GT(ErrorOf(BlackWalls(), ErrorControl::kSplitSphere, 1, records) /
+                  ErrorOf(BlackWalls(), ErrorControl::kOcclusionHessian, 1, records),
+              7)
+        << records;
+}
+
 TEST(PlacementTrialTest, EventsAndSecondOrderAreFarAhead) {
   struct Trial {
     SceneMaker maker;
