@@ -7,9 +7,9 @@
 namespace flatlight {
 namespace {
 
-// The share of variance in what is made least, and of the expected bias in what is stated. Measured from 1 to 4 and from
-// 1 on: these had about the least errors over numbers of photons and scenes of the gallery, and a mean square of what
-// the stated bias leaves, over standard errors, of about 1 (./run bench photon_mapping).
+// The share of variance in what is made least, and of the expected bias in what is stated. Measured from 1 to 4 and
+// from 1 on: these had about the least errors over numbers of photons and scenes of the gallery, and a mean square of
+// what the stated bias leaves, over standard errors, of about 1 (./run bench photon_mapping).
 constexpr double kWeight = 2;
 constexpr double kStated = 1.2;
 // Where so many replicates have photons in reach, their spread tells the noise.
