@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "server/service/job_access.h"
 #include "server/service/job_convert.h"
-#include "server/service/policy.h"
 #include "server/service/status_convert.h"
 #include "server/telemetry/process_readings.h"
 

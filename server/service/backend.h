@@ -6,11 +6,13 @@
 #include <string>
 
 #include "core/execution/executor.h"
+#include "server/review/room_store.h"
 #include "server/scheduler/scheduler.h"
 #include "server/scheduler/task_queue.h"
 #include "server/service/call_telemetry.h"
 #include "server/service/calls_under_way.h"
 #include "server/service/guard.h"
+#include "server/service/job_access.h"
 #include "server/service/limits.h"
 #include "server/service/scene_cache.h"
 #include "server/store/job_store.h"
@@ -26,6 +28,8 @@ struct Backend {
   const Guard guard;
   JobStore& jobs;
   SceneStore& scenes;
+  RoomStore& rooms;
+  const JobAccess access;
   SceneCache& built_scenes;
   Scheduler& scheduler;
   // For work that takes longer than an event thread may: requests of ordinary size, and those that may take seconds.

@@ -20,12 +20,13 @@ absl::Status Refuse(const std::string& path, const std::string& message) {
 
 }  // namespace
 
-absl::StatusOr<v1::KnownRecords> RecordsOfJob(const Caller& caller, const v1::KnownRecords& known, JobStore& jobs) {
+absl::StatusOr<v1::KnownRecords> RecordsOfJob(const Caller& caller, const v1::KnownRecords& known,
+                                              const JobAccess& jobs) {
   if (known.records_size() > 0 || known.has_seal())
     return Refuse("records.job", "is given together with records: leave one of them out");
   const auto id = ParseJobName(known.job());
   if (!id.ok()) return Refuse("records.job", "\"" + known.job() + "\"; a job is named jobs/{uuid}");
-  const auto job = FindSeen(caller, *id, jobs);
+  const auto job = jobs.FindSeen(caller, *id);
   if (!job.ok()) return Refuse("records.job", "\"" + known.job() + "\" is not known here");
   if (!HasEnded(job->state->phase)) return Refuse("records.job", "has not ended; watch it until it has, or cancel it");
   const auto& field = job->state->field;

@@ -9,8 +9,8 @@
 #include "absl/status/statusor.h"
 #include "core/render/plan.h"
 #include "flatlight/v1/render_service.pb.h"
+#include "server/service/job_access.h"
 #include "server/service/policy.h"
-#include "server/store/job_store.h"
 
 namespace flatlight {
 
@@ -20,7 +20,8 @@ struct TakenRecords {
 };
 
 // The records of the job that a request names, with their seal; a job that the caller may not see is not known.
-absl::StatusOr<v1::KnownRecords> RecordsOfJob(const Caller& caller, const v1::KnownRecords& known, JobStore& jobs);
+absl::StatusOr<v1::KnownRecords> RecordsOfJob(const Caller& caller, const v1::KnownRecords& known,
+                                              const JobAccess& jobs);
 
 // The records that a request brings for a plan. An error if they are damaged, or are of another world or gather than
 // the plan's.

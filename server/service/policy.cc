@@ -2,7 +2,6 @@
 #include "server/service/policy.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "server/store/error.h"
 
@@ -17,7 +16,7 @@ absl::Status Denied(const std::string& reason, const std::string& message) {
 
 const std::vector<PolicyRow>& Policy() {
   static const std::vector<PolicyRow> kPolicy = {
-      // Whose the job is decides the rest: FindSeen, CheckRight.
+      // Whose the job is decides the rest: JobAccess.
       {"CreateJobRequest", Role::kStudent},
       {"GetJobRequest", Role::kStudent},
       {"ListJobsRequest", Role::kStudent},
@@ -30,6 +29,17 @@ const std::vector<PolicyRow>& Policy() {
       {"ShareJobRequest", Role::kStudent},
       {"UnshareJobRequest", Role::kStudent},
       {"ExplainJobRequest", Role::kStudent},
+      {"CreateRoomRequest", Role::kInstructor},
+      // Whose the room is decides the rest: ReviewCalls.
+      {"GetRoomRequest", Role::kStudent},
+      {"ListRoomsRequest", Role::kStudent},
+      {"ShareRoomRequest", Role::kStudent},
+      {"UnshareRoomRequest", Role::kStudent},
+      {"LookAtRequest", Role::kStudent},
+      {"AddNoteRequest", Role::kStudent},
+      {"WatchRoomRequest", Role::kStudent},
+      {"CloseRoomRequest", Role::kStudent},
+      {"DeleteRoomRequest", Role::kStudent},
       // An uploaded scene is named by the hash of its bytes: who knows the name has had the scene. Students are not
       // listed the uploads, and do not delete what another may have uploaded too.
       {"UploadSceneRequest", Role::kStudent},
@@ -50,40 +60,6 @@ absl::Status CheckRole(const Caller& caller, std::string_view request) {
   if (caller.role >= row->least) return absl::OkStatus();
   return Denied("ROLE_TOO_LOW", "this call is for the role " + std::string(RoleName(row->least)) + " and above; " +
                                     caller.name + " is a " + std::string(RoleName(caller.role)));
-}
-
-JobRight RightByRole(const Caller& caller, const JobSpec& job) {
-  if (job.owner == caller.name || caller.role >= Role::kInstructor) return JobRight::kOwn;
-  return caller.role >= Role::kGrader ? JobRight::kSee : JobRight::kNone;
-}
-
-absl::StatusOr<JobRight> RightOn(const Caller& caller, const JobSpec& job, JobStore& jobs) {
-  const JobRight by_role = RightByRole(caller, job);
-  if (by_role == JobRight::kOwn) return by_role;
-  const auto grants = jobs.GrantsOf(job.id);
-  if (!grants.ok()) return grants.status();
-  const auto access = AccessOf(*grants, Grantee::Of(caller.name, caller.groups));
-  if (!access) return by_role;
-  return *access == Access::kControl ? JobRight::kControl : JobRight::kSee;
-}
-
-absl::StatusOr<JobRecord> FindSeen(const Caller& caller, const JobId& id, JobStore& jobs) {
-  auto job = jobs.Get(id);
-  if (!job.ok()) return job;
-  const auto right = RightOn(caller, *job->spec, jobs);
-  if (!right.ok()) return right.status();
-  return *right == JobRight::kNone ? NoSuchJob(id) : std::move(job);
-}
-
-absl::Status CheckRight(const Caller& caller, JobRight right, const JobId& id, JobStore& jobs) {
-  const auto job = FindSeen(caller, id, jobs);
-  if (!job.ok()) return job.status();
-  const auto has = RightOn(caller, *job->spec, jobs);
-  if (!has.ok()) return has.status();
-  if (*has >= right) return absl::OkStatus();
-  return Denied("NOT_YOUR_JOB", id.Name() + (*has == JobRight::kControl
-                                                 ? " is not yours: you may control it, but not delete or share it"
-                                                 : " is not yours: you may watch it, but not change it"));
 }
 
 }  // namespace flatlight

@@ -11,10 +11,10 @@
 #include "core/render/plan.h"
 #include "server/convert/scene_reader.h"
 #include "server/convert/settings_convert.h"
+#include "server/service/job_access.h"
 #include "server/service/job_convert.h"
 #include "server/service/known_records.h"
 #include "server/service/page.h"
-#include "server/service/policy.h"
 #include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
 #include "server/store/error.h"
@@ -106,7 +106,7 @@ absl::StatusOr<JobRun::Restored> MakeJob(Backend& backend, const v1::CreateJobRe
 
 // With the records of the job that it names: that job may be deleted before this one is restored.
 absl::StatusOr<v1::CreateJobRequest> WithRecords(const Caller& caller, const v1::CreateJobRequest& request,
-                                                 JobStore& jobs) {
+                                                 const JobAccess& jobs) {
   auto records = RecordsOfJob(caller, request.records(), jobs);
   if (!records.ok()) return records.status();
   v1::CreateJobRequest whole = request;
@@ -144,7 +144,7 @@ absl::StatusOr<v1::Job> ChangeShares(Backend& backend, const Caller& caller, con
                                      const Action& action) {
   const auto id = ParseJobName(name);
   if (!id.ok()) return id.status();
-  if (absl::Status allowed = CheckRight(caller, JobRight::kOwn, *id, backend.jobs); !allowed.ok()) return allowed;
+  if (absl::Status allowed = backend.access.CheckRight(caller, JobRight::kOwn, *id); !allowed.ok()) return allowed;
   if (absl::Status changed = action(*id); !changed.ok()) return changed;
   const auto job = backend.jobs.Get(*id);
   if (!job.ok()) return job.status();
@@ -156,7 +156,7 @@ absl::StatusOr<v1::Job> ControlJob(Backend& backend, const Caller& caller, const
                                    const Action& action) {
   const auto id = ParseJobName(name);
   if (!id.ok()) return id.status();
-  if (absl::Status allowed = CheckRight(caller, JobRight::kControl, *id, backend.jobs); !allowed.ok()) return allowed;
+  if (absl::Status allowed = backend.access.CheckRight(caller, JobRight::kControl, *id); !allowed.ok()) return allowed;
   const absl::StatusOr<JobRecord> job = action(*id);
   if (!job.ok()) return job.status();
   return WholeJob(*job);
@@ -184,7 +184,7 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
   absl::StatusOr<v1::CreateJobRequest> with_records;
   const v1::CreateJobRequest* whole = &request;
   if (!request.records().job().empty()) {
-    with_records = WithRecords(caller, request, backend.jobs);
+    with_records = WithRecords(caller, request, backend.access);
     if (!with_records.ok()) return with_records.status();
     whole = &*with_records;
   }
@@ -235,7 +235,7 @@ absl::StatusOr<JobRun::Restored> RestoreJob(Backend& backend, JobArchive& archiv
 absl::StatusOr<v1::Job> GetJob(Backend& backend, const Caller& caller, const v1::GetJobRequest& request) {
   const auto id = ParseJobName(request.name());
   if (!id.ok()) return id.status();
-  const auto job = FindSeen(caller, *id, backend.jobs);
+  const auto job = backend.access.FindSeen(caller, *id);
   if (!job.ok()) return job.status();
   return SharedJob(backend, caller, *job);
 }
@@ -281,7 +281,7 @@ absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const Caller& 
                                                 const v1::DeleteJobRequest& request) {
   const auto id = ParseJobName(request.name());
   if (!id.ok()) return id.status();
-  if (absl::Status allowed = CheckRight(caller, JobRight::kOwn, *id, backend.jobs); !allowed.ok()) return allowed;
+  if (absl::Status allowed = backend.access.CheckRight(caller, JobRight::kOwn, *id); !allowed.ok()) return allowed;
   if (absl::Status deleted = backend.scheduler.Delete(*id); !deleted.ok()) return deleted;
   return v1::DeleteJobResponse();
 }

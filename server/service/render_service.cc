@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/render_service.h"
 
-#include <functional>
 #include <memory>
+#include <utility>
 
 #include "server/service/call.h"
 #include "server/service/job_convert.h"
-#include "server/service/policy.h"
+#include "server/service/job_watch.h"
+#include "server/service/refused_stream.h"
 #include "server/service/render_calls.h"
 #include "server/service/result_stream.h"
 #include "server/service/scene_lane.h"
-#include "server/service/watcher.h"
 
 namespace flatlight {
 namespace {
@@ -19,13 +19,6 @@ constexpr double kDefaultRate = 20;
 constexpr double kMaxRate = 1000;
 
 constexpr auto kQuickLane = [](const auto&) { return Lane::kQuick; };
-
-// A stream that ends before it begins. Deletes itself.
-class RefusedStream final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
- public:
-  explicit RefusedStream(const absl::Status& why) { Finish(ToGrpcStatus(why)); }
-  void OnDone() override { delete this; }
-};
 
 }  // namespace
 
@@ -90,7 +83,7 @@ grpc::ServerUnaryReactor* RenderService::UnshareJob(Context* context, const Byte
   return Answer<v1::UnshareJobRequest>(backend_, context, request, response, kQuickLane,
                                        [this](const Caller& caller, const v1::UnshareJobRequest& r) {
                                          auto job = flatlight::UnshareJob(backend_, caller, r);
-                                         if (job.ok()) hub_.AccessChanged(*JobId::FromName(r.name()));
+                                         if (job.ok()) hub_.AccessChanged(r.name());
                                          return job;
                                        });
 }
@@ -104,12 +97,12 @@ grpc::ServerUnaryReactor* RenderService::ExplainJob(Context* context, const Byte
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::WatchJob(Context* context, const Bytes* request) {
-  const auto watcher = StartWatch(*context, *request);
-  if (!watcher.ok()) return new RefusedStream(watcher.status());
-  return watcher->get();
+  const auto watch = StartWatch(*context, *request);
+  if (!watch.ok()) return new RefusedStream(watch.status());
+  return watch->get();
 }
 
-absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context& context, const Bytes& bytes) {
+absl::StatusOr<std::shared_ptr<JobWatch>> RenderService::StartWatch(const Context& context, const Bytes& bytes) {
   const auto caller = backend_.guard.Authorize(context, v1::WatchJobRequest::descriptor()->name());
   if (!caller.ok()) return caller.status();
   backend_.telemetry.NoteCaller(context, caller->name);
@@ -122,7 +115,7 @@ absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context
   if (!(rate > 0 && rate <= kMaxRate)) {
     return MakeFieldError("max_rate", std::to_string(rate) + "; allowed: more than 0, at most 1000 (updates a second)");
   }
-  const auto job = FindSeen(*caller, *id, backend_.jobs);
+  const auto job = backend_.access.FindSeen(*caller, *id);
   if (!job.ok()) return job.status();
   WatchUpdate::Known known;
   if (request.epoch() == hub_.options().epoch && request.sequence() > 0) {
@@ -136,24 +129,23 @@ absl::StatusOr<std::shared_ptr<Watcher>> RenderService::StartWatch(const Context
   // Slow enough rates mean: only the first state and the last.
   const double seconds = std::min(1 / rate, 1e6);
   const auto interval = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
-  std::function<void()> on_disconnect;
+  Watch::Hooks hooks;
   if (request.cancel_on_disconnect()) {
     const auto may_cancel = [this, caller = *caller, id = *id] {
-      return CheckRight(caller, JobRight::kControl, id, backend_.jobs);
+      return backend_.access.CheckRight(caller, JobRight::kControl, id);
     };
     if (absl::Status allowed = may_cancel(); !allowed.ok()) return allowed;
-    on_disconnect = [this, id = *id, may_cancel] {
+    hooks.on_disconnect = [this, id = *id, may_cancel] {
       if (may_cancel().ok()) backend_.scheduler.RequestCancel(id);
     };
   }
-  std::function<absl::Status()> may_see;
   if (RightByRole(*caller, *job->spec) == JobRight::kNone) {
-    may_see = [this, caller = *caller, id = *id] { return FindSeen(caller, id, backend_.jobs).status(); };
+    hooks.may_see = [this, caller = *caller, id = *id] { return backend_.access.FindSeen(caller, id).status(); };
   }
-  auto watcher = std::make_shared<Watcher>(hub_, *id, known, interval, std::move(on_disconnect), std::move(may_see));
-  if (absl::Status added = hub_.Add(*id, watcher); !added.ok()) return added;
+  auto watch = std::make_shared<JobWatch>(hub_, *id, known, interval, std::move(hooks));
+  if (absl::Status added = hub_.Add(id->Name(), watch); !added.ok()) return added;
   if (known) ++hub_.counts().resumed;
-  return watcher;
+  return watch;
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::GetResult(Context* context, const Bytes* bytes) {
@@ -167,7 +159,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::GetResult(Context* co
   if (!id.ok()) return new RefusedStream(id.status());
   auto stream = std::make_unique<ResultStream>(backend_.calls.Enter());
   const absl::Status posted = PostTo(backend_.quick, 0, [this, caller = *caller, id = *id, stream = stream.get()] {
-    const auto job = FindSeen(caller, id, backend_.jobs);
+    const auto job = backend_.access.FindSeen(caller, id);
     if (!job.ok()) return stream->Fail(ToGrpcStatus(job.status()));
     auto result = results_.Get(id, [&]() -> ResultCache::Bytes {
       auto written = backend_.jobs.WrittenResult(id);

@@ -6,6 +6,7 @@
 
 #include "flatlight/v1/render_service.grpc.pb.h"
 #include "server/service/backend.h"
+#include "server/service/job_watch.h"
 #include "server/service/result_cache.h"
 #include "server/service/watch_hub.h"
 
@@ -21,7 +22,7 @@ using RawRenderUnary = v1::RenderService::WithRawCallbackMethod_CreateJob<
 using RawRenderService = RawRenderUnary<v1::RenderService::WithRawCallbackMethod_WatchJob<
     v1::RenderService::WithRawCallbackMethod_GetResult<v1::RenderService::Service>>>;
 
-// gRPC's side of RenderService; the calls themselves are in render_calls.h, watcher.h and result_stream.h.
+// gRPC's side of RenderService; the calls themselves are in render_calls.h, job_watch.h and result_stream.h.
 class RenderService final : public RawRenderService {
  public:
   RenderService(Backend& backend, WatchHub& hub) : backend_(backend), hub_(hub) {}
@@ -42,7 +43,7 @@ class RenderService final : public RawRenderService {
   grpc::ServerWriteReactor<Bytes>* GetResult(Context* context, const Bytes* request) override;
 
  private:
-  absl::StatusOr<std::shared_ptr<Watcher>> StartWatch(const Context& context, const Bytes& bytes);
+  absl::StatusOr<std::shared_ptr<JobWatch>> StartWatch(const Context& context, const Bytes& bytes);
 
   Backend& backend_;
   WatchHub& hub_;

@@ -16,6 +16,7 @@
 #include "grpcpp/health_check_service_interface.h"
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
+#include "server/review/room_store.h"
 #include "server/scheduler/task_queue.h"
 #include "server/service/backend.h"
 #include "server/service/build_version.h"
@@ -25,6 +26,7 @@
 #include "server/service/listen_address.h"
 #include "server/service/render_calls.h"
 #include "server/service/render_service.h"
+#include "server/service/review_service.h"
 #include "server/service/scene_cache.h"
 #include "server/service/scene_service.h"
 #include "server/service/tls_credentials.h"
@@ -50,9 +52,9 @@ constexpr std::size_t kMaxIndexedElements = 2'000'000;  // Of IndexCache::kEleme
 constexpr std::size_t kMaxSolvedBytes = 256u << 20;     // Of what `reference` found.
 constexpr std::chrono::milliseconds kFlush{100};
 constexpr double kMaxCachedResultBytes = 256e6;  // Of those that are on disk too.
-const std::vector<std::string> kServices = {v1::RenderService::service_full_name(),
-                                            v1::SceneService::service_full_name(),
-                                            v1::ServerService::service_full_name()};
+const std::vector<std::string> kServices = {
+    v1::RenderService::service_full_name(), v1::SceneService::service_full_name(),
+    v1::ServerService::service_full_name(), v1::ReviewService::service_full_name()};
 constexpr char kAuditLog[] = "/audit.jsonl";  // In the data folder.
 constexpr char kStorageHealth[] = "flatlight.storage";
 constexpr int kQuickThreads = 4;
@@ -108,7 +110,7 @@ struct Logs {
 // In the order in which they need each other; destroyed in reverse.
 struct Server::Parts {
   Parts(const ServerOptions& options, std::unique_ptr<Storage> opened, Logs opened_logs,
-        std::unique_ptr<Database> users)
+        std::unique_ptr<Database> users, std::unique_ptr<Database> for_rooms)
       : logs(std::move(opened_logs)),
         pool(options.threads),
         storage(std::move(opened)),
@@ -118,9 +120,10 @@ struct Server::Parts {
         jobs(*job_store),
         scene_store(MakeSceneStore(options)),
         scenes(*scene_store),
+        rooms(RoomLimits(), std::move(for_rooms)),
         hub({.epoch = RandomEpoch(), .max_watches = options.limits.max_watches, .heartbeat = options.heartbeat}, jobs),
         scheduler(MakeSchedulerOptions(options, metrics), jobs, pool, clock, StartOf(options),
-                  [this](const JobId& job) { hub.JobChanged(job); }),
+                  [this](const JobId& job) { hub.Changed(job.Name()); }),
         quick(kQuickThreads, kMaxWaitingQuickBytes),
         slow(kSlowThreads, kMaxWaitingSlowBytes),
         backend{.version = BuildVersion(),
@@ -129,6 +132,8 @@ struct Server::Parts {
                 .guard = Guard(options.token, std::move(users)),
                 .jobs = jobs,
                 .scenes = scenes,
+                .rooms = rooms,
+                .access = JobAccess(jobs, rooms),
                 .built_scenes = built_scenes,
                 .scheduler = scheduler,
                 .quick = quick,
@@ -136,7 +141,8 @@ struct Server::Parts {
                 .telemetry = telemetry},
         render_service(backend, hub),
         scene_service(backend),
-        server_service(backend) {
+        server_service(backend),
+        review_service(backend, hub) {
     metrics.ReadWith([this] { return Read(); });
   }
 
@@ -166,7 +172,7 @@ struct Server::Parts {
     durable_options.memory.max_jobs = most;
     durable_options.memory.max_ended_bytes = kMaxCachedResultBytes;
     auto store = std::make_unique<DurableJobStore>(
-        durable_options, clock, *archive, format, [this](const JobId& job) { hub.JobChanged(job); },
+        durable_options, clock, *archive, format, [this](const JobId& job) { hub.Changed(job.Name()); },
         [this](const absl::Status& health) { TellStorageHealth(health); });
     durable = store.get();
     return store;
@@ -240,6 +246,7 @@ struct Server::Parts {
   DurableSceneStore* durable_scenes = nullptr;
   std::unique_ptr<SceneStore> scene_store;
   SceneStore& scenes;
+  RoomStore rooms;
   SceneCache built_scenes{kMaxBuiltSceneBytes};
   WatchHub hub;
   Scheduler scheduler;
@@ -249,6 +256,7 @@ struct Server::Parts {
   RenderService render_service;
   SceneService scene_service;
   ServerService server_service;
+  ReviewService review_service;
   std::unique_ptr<TlsCredentials> tls;  // Null: without TLS.
   std::mutex health_mutex;              // Held while `grpc` changes.
   bool storage_healthy = true;
@@ -302,9 +310,13 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
     if (!connection.ok()) return connection.status();
     users = *std::move(connection);
   }
+  auto for_rooms =
+      options.data.empty() ? RoomStore::NewMemory() : Database::OpenExisting(Storage::DatabasePath(options.data));
+  if (!for_rooms.ok()) return for_rooms.status();
   Logs logs;
   if (absl::Status opened = logs.Open(options); !opened.ok()) return opened;
-  auto parts = std::make_unique<Parts>(options, std::move(storage), std::move(logs), std::move(users));
+  auto parts =
+      std::make_unique<Parts>(options, std::move(storage), std::move(logs), std::move(users), *std::move(for_rooms));
   parts->tls = std::move(tls);
   if (!address->of_this_machine) {
     const auto knows = parts->backend.guard.KnowsEverybody();
@@ -326,6 +338,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   builder.RegisterService(&parts->render_service);
   builder.RegisterService(&parts->scene_service);
   builder.RegisterService(&parts->server_service);
+  builder.RegisterService(&parts->review_service);
   {
     const std::lock_guard lock(parts->health_mutex);
     parts->grpc = builder.BuildAndStart();

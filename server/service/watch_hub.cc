@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "server/service/watcher.h"
+#include "server/service/watch.h"
 #include "server/store/error.h"
 
 namespace flatlight {
@@ -20,7 +20,7 @@ WatchHub::~WatchHub() {
   thread_.join();
 }
 
-absl::Status WatchHub::Add(const JobId& job, const std::shared_ptr<Watcher>& watcher) {
+absl::Status WatchHub::Add(const std::string& subject, const std::shared_ptr<Watch>& watch) {
   const std::lock_guard lock(mutex_);
   if (draining_) return MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down");
   if (count_ >= options_.max_watches) {
@@ -31,32 +31,32 @@ absl::Status WatchHub::Add(const JobId& job, const std::shared_ptr<Watcher>& wat
   }
   ++count_;
   ++counts_.added;
-  watched_[job].watchers.insert(watcher);
-  soon_.push_back(watcher);
+  watched_[subject].watches.insert(watch);
+  soon_.push_back(watch);
   wake_.notify_one();
   return absl::OkStatus();
 }
 
-void WatchHub::JobChanged(const JobId& job) {
+void WatchHub::Changed(const std::string& subject) {
   const std::lock_guard lock(mutex_);
-  if (watched_.count(job) == 0) return;
-  changed_.insert(job);
+  if (watched_.count(subject) == 0) return;
+  changed_.insert(subject);
   wake_.notify_one();
 }
 
-void WatchHub::AccessChanged(const JobId& job) {
+void WatchHub::AccessChanged(const std::string& subject) {
   const std::lock_guard lock(mutex_);
-  const auto watched = watched_.find(job);
+  const auto watched = watched_.find(subject);
   if (watched == watched_.end()) return;
-  for (const auto& watcher : watched->second.watchers) watcher->NoteAccessChange();
-  changed_.insert(job);
+  for (const auto& watch : watched->second.watches) watch->NoteAccessChange();
+  changed_.insert(subject);
   wake_.notify_one();
 }
 
 void WatchHub::Drain(std::chrono::milliseconds grace) {
   std::unique_lock lock(mutex_);
   draining_ = true;
-  for (const auto& [job, watched] : watched_) changed_.insert(job);
+  for (const auto& [subject, watched] : watched_) changed_.insert(subject);
   wake_.notify_one();
   left_.wait_for(lock, grace, [this] { return count_ == 0; });
 }
@@ -73,7 +73,7 @@ std::size_t WatchHub::size() const {
 
 std::shared_ptr<WatchUpdate> WatchHub::UpdateFor(const JobRecord& job, WatchUpdate::Known known) {
   const std::lock_guard lock(mutex_);
-  const auto watched = watched_.find(job.spec->id);
+  const auto watched = watched_.find(job.spec->id.Name());
   if (watched == watched_.end()) return std::make_shared<WatchUpdate>(job, options_.epoch, known);
   auto& updates = watched->second.updates;
   if (!updates.empty() && updates.front()->state().sequence < job.state->sequence) updates.clear();
@@ -85,44 +85,44 @@ std::shared_ptr<WatchUpdate> WatchHub::UpdateFor(const JobRecord& job, WatchUpda
   return update;
 }
 
-void WatchHub::StepSoon(const std::shared_ptr<Watcher>& watcher) {
+void WatchHub::StepSoon(const std::shared_ptr<Watch>& watch) {
   const std::lock_guard lock(mutex_);
-  soon_.push_back(watcher);
+  soon_.push_back(watch);
   wake_.notify_one();
 }
 
-void WatchHub::StepAt(const std::shared_ptr<Watcher>& watcher, Time time) {
+void WatchHub::StepAt(const std::shared_ptr<Watch>& watch, Time time) {
   const std::lock_guard lock(mutex_);
-  if (watcher->removed) return;
-  Unschedule(*watcher);
-  watcher->wake_time = time;
-  timetable_.emplace(time, watcher);
-  if (timetable_.begin()->second == watcher) wake_.notify_one();
+  if (watch->removed) return;
+  Unschedule(*watch);
+  watch->wake_time = time;
+  timetable_.emplace(time, watch);
+  if (timetable_.begin()->second == watch) wake_.notify_one();
 }
 
-void WatchHub::Unschedule(Watcher& watcher) {
-  if (!watcher.wake_time) return;
-  timetable_.erase({*watcher.wake_time, watcher.shared_from_this()});
-  watcher.wake_time.reset();
+void WatchHub::Unschedule(Watch& watch) {
+  if (!watch.wake_time) return;
+  timetable_.erase({*watch.wake_time, watch.shared_from_this()});
+  watch.wake_time.reset();
 }
 
-void WatchHub::Remove(const JobId& job, const std::shared_ptr<Watcher>& watcher) {
+void WatchHub::Remove(const std::string& subject, const std::shared_ptr<Watch>& watch) {
   const std::lock_guard lock(mutex_);
-  Unschedule(*watcher);
-  watcher->removed = true;
-  const auto watched = watched_.find(job);
-  watched->second.watchers.erase(watcher);
-  if (watched->second.watchers.empty()) watched_.erase(watched);
+  Unschedule(*watch);
+  watch->removed = true;
+  const auto watched = watched_.find(subject);
+  watched->second.watches.erase(watch);
+  if (watched->second.watches.empty()) watched_.erase(watched);
   --count_;
   left_.notify_all();
 }
 
-std::vector<std::shared_ptr<Watcher>> WatchHub::TakeDue() {
-  std::vector<std::shared_ptr<Watcher>> due;
+std::vector<std::shared_ptr<Watch>> WatchHub::TakeDue() {
+  std::vector<std::shared_ptr<Watch>> due;
   due.swap(soon_);
-  for (const JobId& job : changed_) {
-    if (const auto watched = watched_.find(job); watched != watched_.end()) {
-      due.insert(due.end(), watched->second.watchers.begin(), watched->second.watchers.end());
+  for (const std::string& subject : changed_) {
+    if (const auto watched = watched_.find(subject); watched != watched_.end()) {
+      due.insert(due.end(), watched->second.watches.begin(), watched->second.watches.end());
     }
   }
   changed_.clear();
@@ -137,7 +137,7 @@ std::vector<std::shared_ptr<Watcher>> WatchHub::TakeDue() {
 void WatchHub::Work() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
-    std::vector<std::shared_ptr<Watcher>> due = TakeDue();
+    std::vector<std::shared_ptr<Watch>> due = TakeDue();
     if (due.empty()) {
       if (timetable_.empty()) {
         wake_.wait(lock);
@@ -148,7 +148,7 @@ void WatchHub::Work() {
       continue;
     }
     lock.unlock();
-    for (const auto& watcher : due) watcher->Step();
+    for (const auto& watch : due) watch->Step();
     due.clear();
     lock.lock();
   }

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <string>
 #include <thread>
 #include <unordered_map>
 #include <unordered_set>
@@ -23,9 +24,10 @@
 
 namespace flatlight {
 
-class Watcher;
+class Watch;
 
-// All watchers, and the one thread that moves those on whose job has changed or whose time has come.
+// All watches, and the one thread that moves those on whose subject has changed or whose time has come. A subject is
+// named as callers name it: "jobs/{uuid}".
 class WatchHub {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -47,40 +49,40 @@ class WatchHub {
   };
 
   WatchHub(const Options& options, JobStore& jobs);
-  // All watchers must be gone.
+  // All watches must be gone.
   ~WatchHub();
 
   const Options& options() const { return options_; }
   JobStore& jobs() { return jobs_; }
 
   // RESOURCE_EXHAUSTED at the limit, UNAVAILABLE while draining.
-  absl::Status Add(const JobId& job, const std::shared_ptr<Watcher>& watcher);
-  void JobChanged(const JobId& job);
-  // Watchers to whom it was shared ask anew whether they may see the job.
-  void AccessChanged(const JobId& job);
-  // Tells every watcher that the server goes down; waits until all have gone, at most `grace`.
+  absl::Status Add(const std::string& subject, const std::shared_ptr<Watch>& watch);
+  void Changed(const std::string& subject);
+  // Watches that rest on what is shared ask anew whether they may go on.
+  void AccessChanged(const std::string& subject);
+  // Tells every watch that the server goes down; waits until all have gone, at most `grace`.
   void Drain(std::chrono::milliseconds grace);
 
-  // For watchers.
+  // For watches.
   bool draining() const;
   // Watches that are open.
   std::size_t size() const;
   Counts& counts() { return counts_; }
   std::shared_ptr<WatchUpdate> UpdateFor(const JobRecord& job, WatchUpdate::Known known);
-  void StepSoon(const std::shared_ptr<Watcher>& watcher);
-  void StepAt(const std::shared_ptr<Watcher>& watcher, Time time);
-  void Remove(const JobId& job, const std::shared_ptr<Watcher>& watcher);
+  void StepSoon(const std::shared_ptr<Watch>& watch);
+  void StepAt(const std::shared_ptr<Watch>& watch, Time time);
+  void Remove(const std::string& subject, const std::shared_ptr<Watch>& watch);
 
  private:
   struct Watched {
-    std::set<std::shared_ptr<Watcher>> watchers;
-    std::vector<std::shared_ptr<WatchUpdate>> updates;  // To the newest state that was asked for.
+    std::set<std::shared_ptr<Watch>> watches;
+    std::vector<std::shared_ptr<WatchUpdate>> updates;  // Of a job: to the newest state that was asked for.
   };
 
   void Work();
-  // Moves all watchers that are to be stepped now to the caller.
-  std::vector<std::shared_ptr<Watcher>> TakeDue() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void Unschedule(Watcher& watcher) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Moves all watches that are to be stepped now to the caller.
+  std::vector<std::shared_ptr<Watch>> TakeDue() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Unschedule(Watch& watch) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const Options options_;
   JobStore& jobs_;
@@ -91,10 +93,10 @@ class WatchHub {
   bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
   bool draining_ ABSL_GUARDED_BY(mutex_) = false;
   std::size_t count_ ABSL_GUARDED_BY(mutex_) = 0;
-  std::unordered_map<JobId, Watched> watched_ ABSL_GUARDED_BY(mutex_);
-  std::unordered_set<JobId> changed_ ABSL_GUARDED_BY(mutex_);
-  std::vector<std::shared_ptr<Watcher>> soon_ ABSL_GUARDED_BY(mutex_);
-  std::set<std::pair<Time, std::shared_ptr<Watcher>>> timetable_ ABSL_GUARDED_BY(mutex_);  // One entry a watcher.
+  std::unordered_map<std::string, Watched> watched_ ABSL_GUARDED_BY(mutex_);
+  std::unordered_set<std::string> changed_ ABSL_GUARDED_BY(mutex_);
+  std::vector<std::shared_ptr<Watch>> soon_ ABSL_GUARDED_BY(mutex_);
+  std::set<std::pair<Time, std::shared_ptr<Watch>>> timetable_ ABSL_GUARDED_BY(mutex_);  // One entry a watch.
   std::thread thread_;
 };
 

@@ -62,6 +62,16 @@ absl::Status CheckDatabase(Database& database) {
                    database.path() + " is damaged: " + check.Bytes(0) + "; use another backup");
 }
 
+// Who watched a review room may know of more than the backup does: the next notes have those notes' sequences.
+absl::Status RenewEpochs(const std::string& path) {
+  const auto database = Database::OpenExisting(path);
+  if (!database.ok()) return database.status();
+  const auto has_rooms = (*database)->Prepare("SELECT 1 FROM sqlite_master WHERE name = 'rooms'").Step();
+  if (!has_rooms.ok() || !*has_rooms) return has_rooms.status();
+  // 53 bits, as RoomStore's.
+  return (*database)->Execute("UPDATE rooms SET epoch = (random() & 0x1FFFFFFFFFFFFF) | 1");
+}
+
 }  // namespace
 
 absl::Status BackUp(const std::string& folder, const std::string& backup,
@@ -122,8 +132,13 @@ absl::Status RestoreBackup(const std::string& backup, const std::string& folder)
     if (!bytes.ok()) return bytes.status();
     if (absl::Status written = target.Write(sha256, *bytes); !written.ok()) return written;
   }
+  const std::string copy_path = Storage::DatabasePath(folder) + ".part";
+  if (absl::Status copied = (*database)->BackUp(copy_path); !copied.ok()) return copied;
+  if (absl::Status renewed = RenewEpochs(copy_path); !renewed.ok()) return renewed;
   // Last: what has no database is no folder of a server.
-  if (absl::Status copied = (*database)->BackUp(Storage::DatabasePath(folder)); !copied.ok()) return copied;
+  std::error_code error;
+  fs::rename(copy_path, Storage::DatabasePath(folder), error);
+  if (error) return StorageError(Storage::DatabasePath(folder), error.value());
   return SyncFolder(folder);
 }
 

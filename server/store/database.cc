@@ -82,6 +82,11 @@ Statement& Statement::Bind(const std::optional<std::string>& text) {
   return text ? Bind(std::string_view(*text)) : BindNull();
 }
 
+Statement& Statement::BindReal(double value) {
+  sqlite3_bind_double(statement_.get(), ++bound_, value);
+  return *this;
+}
+
 Statement& Statement::BindBlob(std::string_view bytes) {
   // Of no bytes, a null pointer would mean null.
   const char* data = bytes.empty() ? "" : bytes.data();
@@ -118,6 +123,8 @@ absl::Status Statement::Run() {
 }
 
 std::int64_t Statement::Integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+
+double Statement::Real(int column) const { return sqlite3_column_double(statement_.get(), column); }
 
 std::string Statement::Bytes(int column) const {
   const void* data = sqlite3_column_blob(statement_.get(), column);

@@ -25,6 +25,7 @@ class Statement {
   Statement& Bind(std::int64_t value);
   Statement& Bind(std::string_view text);
   Statement& Bind(const std::optional<std::string>& text);  // Absent: null.
+  Statement& BindReal(double value);
   Statement& BindBlob(std::string_view bytes);
   Statement& BindNull();
 
@@ -37,6 +38,7 @@ class Statement {
 
   // Of the row, columns from 0.
   std::int64_t Integer(int column) const;
+  double Real(int column) const;
   std::string Bytes(int column) const;  // Text or blob.
   std::optional<std::string> OptionalBytes(int column) const;
 

@@ -78,6 +78,46 @@ CREATE TRIGGER jobs_drop_grants AFTER DELETE ON jobs BEGIN
 END;
 )sql";
 
+// Times are ms since 1970.
+constexpr char kRooms[] = R"sql(
+CREATE TABLE rooms(
+  number INTEGER PRIMARY KEY AUTOINCREMENT,  -- In the order of creation.
+  uuid TEXT NOT NULL UNIQUE,
+  epoch INTEGER NOT NULL,            -- Of its sequence.
+  owner TEXT NOT NULL,
+  title TEXT NOT NULL,
+  create_time INTEGER NOT NULL,
+  close_time INTEGER,                -- Null: it is open.
+  sequence INTEGER NOT NULL,
+  notes INTEGER NOT NULL DEFAULT 0,
+  note_bytes INTEGER NOT NULL DEFAULT 0,  -- Of all their texts.
+  job TEXT,                          -- What is looked at: jobs/{uuid}, which may be gone.
+  probe TEXT NOT NULL DEFAULT '',
+  point INTEGER,
+  exposure REAL NOT NULL DEFAULT 0,
+  tone_mapping TEXT NOT NULL CHECK(tone_mapping IN ('photographic', 'linear'))
+);
+CREATE INDEX rooms_by_owner ON rooms(owner);
+CREATE INDEX rooms_by_job ON rooms(job);
+CREATE TABLE notes(
+  room INTEGER NOT NULL,  -- Its number.
+  sequence INTEGER NOT NULL,
+  author TEXT NOT NULL,
+  time INTEGER NOT NULL,
+  text TEXT NOT NULL,
+  x REAL,
+  y REAL,
+  job TEXT,
+  request_id TEXT NOT NULL,
+  PRIMARY KEY(room, sequence)
+) WITHOUT ROWID;
+CREATE UNIQUE INDEX notes_by_request ON notes(room, author, request_id) WHERE request_id != '';
+CREATE TRIGGER rooms_drop_rest AFTER DELETE ON rooms BEGIN
+  DELETE FROM notes WHERE room = OLD.number;
+  DELETE FROM grants WHERE resource = 'rooms/' || OLD.uuid;
+END;
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -88,7 +128,7 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs, kScenes, kUsers, kPauses, kGrants};
+  static const std::vector<std::string> kMigrations = {kJobs, kScenes, kUsers, kPauses, kGrants, kRooms};
   return kMigrations;
 }
 

@@ -24,6 +24,7 @@ LAYERS = [
     ["server/gallery"],
     ["server/scheduler"],
     ["server/telemetry"],
+    ["server/review"],
     ["server/service"],
     ["server/app"],
 ]
@@ -38,6 +39,7 @@ FORBIDDEN_INCLUDES = [
     ("server/store", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
     ("server/scheduler", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
     ("server/telemetry", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
+    ("server/review", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
 ]
 
 MAX_LINES = 499

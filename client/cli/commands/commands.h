@@ -34,6 +34,18 @@ CommandResult Resume(const CommandLine& line, Interruption& interruption);
 CommandResult Share(const CommandLine& line, Interruption& interruption);
 CommandResult Unshare(const CommandLine& line, Interruption& interruption);
 
+// room_command.cc
+CommandResult CreateRoom(const CommandLine& line, Interruption& interruption);
+CommandResult Rooms(const CommandLine& line, Interruption& interruption);
+CommandResult ShowRoom(const CommandLine& line, Interruption& interruption);
+CommandResult WatchRoom(const CommandLine& line, Interruption& interruption);
+CommandResult NoteInRoom(const CommandLine& line, Interruption& interruption);
+CommandResult LookInRoom(const CommandLine& line, Interruption& interruption);
+CommandResult ShareRoom(const CommandLine& line, Interruption& interruption);
+CommandResult UnshareRoom(const CommandLine& line, Interruption& interruption);
+CommandResult CloseRoom(const CommandLine& line, Interruption& interruption);
+CommandResult DeleteRoom(const CommandLine& line, Interruption& interruption);
+
 // top_command.cc
 CommandResult Top(const CommandLine& line, Interruption& interruption);
 

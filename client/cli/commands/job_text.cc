@@ -37,9 +37,9 @@ std::string JobListText(const std::vector<v1::Job>& jobs, double now, WhoseJobs 
   return FormatTable(rows);
 }
 
-std::string SharesText(const v1::Job& job) {
+std::string SharesText(const google::protobuf::RepeatedPtrField<v1::Share>& shares) {
   std::string text;
-  for (const v1::Share& share : job.shares())
+  for (const v1::Share& share : shares)
     text += (text.empty() ? "" : ", ") + Printable(share.grantee()) + " (" + OptionName(share.access()) + ")";
   return text.empty() ? "nobody" : text;
 }
@@ -49,7 +49,7 @@ std::string JobText(const v1::Job& job) {
   const std::string end = job.end_reason() == 0 ? "" : ", " + OptionName(job.end_reason());
   rows.push_back({"state", OptionName(job.state()) + end});
   if (!job.owner().empty() && job.owner() != kAnonymous) rows.push_back({"owner", Printable(job.owner())});
-  if (!job.shares().empty()) rows.push_back({"shared", SharesText(job)});
+  if (!job.shares().empty()) rows.push_back({"shared", SharesText(job.shares())});
   if (job.has_error()) rows.push_back({"error", Printable(job.error().message())});
   rows.push_back({"progress", ProgressLine(job, 0)});
   if (job.progress().samples() > 0)

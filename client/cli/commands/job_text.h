@@ -16,7 +16,7 @@ std::string JobListText(const std::vector<v1::Job>& jobs, double now, WhoseJobs 
 // All about a job.
 std::string JobText(const v1::Job& job);
 // "group:lab-1 (read), user:ada (control)", or "nobody".
-std::string SharesText(const v1::Job& job);
+std::string SharesText(const google::protobuf::RepeatedPtrField<v1::Share>& shares);
 
 }  // namespace flatlight
 

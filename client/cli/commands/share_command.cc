@@ -26,7 +26,7 @@ CommandResult ChangeShares(const CommandLine& line, Interruption& interruption, 
     if (!job.ok()) return job.status();
   }
   if (line.quiet && !line.json) return ExitCode::kDone;
-  const std::string text = line.json ? ToJson(*job) : job->name() + " shared with " + SharesText(*job) + '\n';
+  const std::string text = line.json ? ToJson(*job) : job->name() + " shared with " + SharesText(job->shares()) + '\n';
   if (absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
   return ExitCode::kDone;
 }

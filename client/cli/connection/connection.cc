@@ -36,6 +36,7 @@ Connection::Connection(ServerAddress address, Tls tls, std::string token, Interr
   render_ = v1::RenderService::NewStub(channel);
   scenes_ = v1::SceneService::NewStub(channel);
   server_ = v1::ServerService::NewStub(channel);
+  review_ = v1::ReviewService::NewStub(channel);
 }
 
 absl::StatusOr<std::unique_ptr<Connection>> Connection::Open(const ServerAddress& address, const Tls& tls,

@@ -14,6 +14,7 @@
 #include "client/cli/connection/server_address.h"
 #include "client/cli/tls/tls.h"
 #include "flatlight/v1/render_service.grpc.pb.h"
+#include "flatlight/v1/review_service.grpc.pb.h"
 #include "flatlight/v1/scene_service.grpc.pb.h"
 #include "flatlight/v1/server_service.grpc.pb.h"
 
@@ -32,6 +33,7 @@ class Connection {
   v1::RenderService::Stub& render() { return *render_; }
   v1::SceneService::Stub& scenes() { return *scenes_; }
   v1::ServerService::Stub& server() { return *server_; }
+  v1::ReviewService::Stub& review() { return *review_; }
   const v1::GetCapabilitiesResponse& capabilities() const { return capabilities_; }
   const std::string& address() const { return address_.text; }
   Interruption& interruption() { return interruption_; }
@@ -64,6 +66,7 @@ class Connection {
   std::unique_ptr<v1::RenderService::Stub> render_;
   std::unique_ptr<v1::SceneService::Stub> scenes_;
   std::unique_ptr<v1::ServerService::Stub> server_;
+  std::unique_ptr<v1::ReviewService::Stub> review_;
   v1::GetCapabilitiesResponse capabilities_;
 };
 

@@ -12,7 +12,6 @@
 namespace flatlight {
 namespace {
 
-const std::string kPrefix = "jobs/";
 constexpr std::size_t kUuidLength = 36;
 
 bool IsUuidBeginning(const std::string& text) {
@@ -25,8 +24,9 @@ bool IsUuidBeginning(const std::string& text) {
   return true;
 }
 
-std::string WithoutPrefix(const std::string& text) {
-  return text.starts_with(kPrefix) ? text.substr(kPrefix.size()) : text;
+std::string WithoutPrefix(const NameKind& kind, const std::string& text) {
+  const std::string prefix = kind.prefix;
+  return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
 }
 
 }  // namespace
@@ -41,25 +41,35 @@ std::string NewUuid() {
   return uuid;
 }
 
-bool IsWholeJobName(const std::string& text) {
-  const std::string uuid = WithoutPrefix(text);
+bool IsWholeName(const NameKind& kind, const std::string& text) {
+  const std::string uuid = WithoutPrefix(kind, text);
   return uuid.size() == kUuidLength && IsUuidBeginning(uuid);
 }
 
-absl::StatusOr<std::string> MatchJobName(const std::string& text, const std::vector<std::string>& all) {
-  const std::string beginning = WithoutPrefix(text);
+absl::StatusOr<std::string> MatchName(const NameKind& kind, const std::string& text,
+                                      const std::vector<std::string>& all) {
+  const std::string prefix = kind.prefix, noun = kind.noun;
+  const std::string beginning = WithoutPrefix(kind, text);
   if (!IsUuidBeginning(beginning))
-    return UsageError("'" + text + "' is not a job; must be jobs/UUID, the UUID, or the beginning of one");
-  if (beginning.size() == kUuidLength) return kPrefix + beginning;
+    return UsageError("'" + text + "' is not a " + noun + "; must be " + prefix +
+                      "UUID, the UUID, or the beginning of one");
+  if (beginning.size() == kUuidLength) return prefix + beginning;
   std::vector<std::string> matches;
   for (const std::string& name : all)
-    if (name.starts_with(kPrefix + beginning)) matches.push_back(name);
+    if (name.starts_with(prefix + beginning)) matches.push_back(name);
   if (matches.size() == 1) return matches[0];
-  if (matches.empty()) return UsageError("no job begins with '" + beginning + "'; `flatlight jobs` lists them");
-  std::string message = std::to_string(matches.size()) + " jobs begin with '" + beginning + "':";
-  for (std::size_t i = 0; i < matches.size() && i < 5; ++i) message += " " + WithoutPrefix(matches[i]);
+  if (matches.empty())
+    return UsageError("no " + noun + " begins with '" + beginning + "'; `" + kind.list + "` lists them");
+  std::string message = std::to_string(matches.size()) + " " + noun + "s begin with '" + beginning + "':";
+  for (std::size_t i = 0; i < matches.size() && i < 5; ++i) message += " " + WithoutPrefix(kind, matches[i]);
   return UsageError(message + (matches.size() > 5 ? " ..." : ""));
 }
+
+absl::StatusOr<std::string> MatchJobName(const std::string& text, const std::vector<std::string>& all) {
+  return MatchName(kJobNames, text, all);
+}
+
+bool IsWholeJobName(const std::string& text) { return IsWholeName(kJobNames, text); }
 
 absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection, WhoseJobs whose) {
   std::vector<v1::Job> jobs;
@@ -79,7 +89,7 @@ absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection, WhoseJobs 
 
 absl::StatusOr<std::string> ResolveJobName(Connection& connection, const std::string& text) {
   std::set<std::string> names;
-  if (!IsWholeJobName(text) && IsUuidBeginning(WithoutPrefix(text))) {
+  if (!IsWholeJobName(text) && IsUuidBeginning(WithoutPrefix(kJobNames, text))) {
     for (const WhoseJobs whose : {WhoseJobs::kOwn, WhoseJobs::kShared}) {
       const auto jobs = ListJobs(connection, whose);
       if (!jobs.ok()) return jobs.status();

@@ -13,11 +13,23 @@ namespace flatlight {
 // A random UUID (RFC 4122, version 4).
 std::string NewUuid();
 
-// "jobs/{uuid}" from that, from a UUID, or (through `all`, every job's name) from the beginning of one. Errors end with
-// ExitCode::kUsage.
-absl::StatusOr<std::string> MatchJobName(const std::string& text, const std::vector<std::string>& all);
+// What has a name of the form PREFIX{uuid}.
+struct NameKind {
+  const char* prefix;
+  const char* noun;
+  const char* list;  // The command that lists them.
+};
+inline constexpr NameKind kJobNames = {"jobs/", "job", "flatlight jobs"};
+inline constexpr NameKind kRoomNames = {"rooms/", "room", "flatlight room list"};
 
+// A whole name from a whole name, from a UUID, or (through `all`, every name) from the beginning of one. Errors end
+// with ExitCode::kUsage.
+absl::StatusOr<std::string> MatchName(const NameKind& kind, const std::string& text,
+                                      const std::vector<std::string>& all);
 // Whether `text` is a whole name, so that nobody needs to be asked.
+bool IsWholeName(const NameKind& kind, const std::string& text);
+
+absl::StatusOr<std::string> MatchJobName(const std::string& text, const std::vector<std::string>& all);
 bool IsWholeJobName(const std::string& text);
 
 enum class WhoseJobs {

@@ -1,39 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/jobs/watch.h"
 
-#include <algorithm>
-#include <random>
-
 #include "client/cli/connection/message_stream.h"
+#include "client/cli/jobs/comeback.h"
 #include "client/cli/status/exit_code.h"
-#include "client/cli/text/numbers.h"
 
 namespace flatlight {
 namespace {
 
-using std::chrono::milliseconds;
-using std::chrono::steady_clock;
-
-// Whether the same call may well succeed a little later.
-bool MayComeBack(const grpc::Status& status) {
-  switch (status.error_code()) {
-    case grpc::StatusCode::OK:  // Ended too early.
-    case grpc::StatusCode::UNAVAILABLE:
-    case grpc::StatusCode::DEADLINE_EXCEEDED:
-    case grpc::StatusCode::CANCELLED:
-    case grpc::StatusCode::ABORTED:
-    case grpc::StatusCode::INTERNAL:  // Also gRPC's own, of a broken connection.
-    case grpc::StatusCode::UNKNOWN:
-      return true;
-    default:
-      return false;
-  }
-}
-
 class Watch {
  public:
   Watch(Connection& connection, const std::string& name, const WatchOptions& options)
-      : connection_(connection), options_(options) {
+      : connection_(connection), options_(options), comeback_(connection, options.patience) {
     request_.set_name(name);
     request_.set_max_rate(options.max_rate);
     request_.set_cancel_on_disconnect(options.cancel_on_disconnect);
@@ -71,8 +49,7 @@ class Watch {
 
   void Take(const v1::WatchJobResponse& message) {
     heard_anything_ = true;
-    failures_ = 0;
-    last_message_ = steady_clock::now();
+    comeback_.Heard();
     // Of another epoch all begins anew.
     if (request_.epoch() != 0 && message.epoch() != request_.epoch()) records_ = 0;
     TakeRecords(message);
@@ -109,26 +86,18 @@ class Watch {
   absl::Status WaitForNextTry(const grpc::Status& status) {
     if (options_.check_server)
       if (absl::Status alive = options_.check_server(); !alive.ok()) return alive;
-    if (steady_clock::now() - last_message_ > options_.patience)
-      return absl::UnavailableError("lost the server at " + connection_.address() + " for more than " +
-                                    FormatSeconds(std::chrono::duration<double>(options_.patience).count()) + ": " +
-                                    status.error_message());
-    const double chance = std::uniform_real_distribution<double>(0, 1)(random_);
-    if (!connection_.interruption().Sleep(Backoff(++failures_, chance))) return InterruptedError("interrupted");
-    return absl::OkStatus();
+    return comeback_.Wait(status);
   }
 
   Connection& connection_;
   const WatchOptions& options_;
+  Comeback comeback_;
   v1::WatchJobRequest request_;
   v1::Job job_;
   absl::Status unwanted_;      // Why no more updates are wanted.
   std::uint32_t records_ = 0;  // Received: of the log, in order.
   bool whole_ = false;         // The last message was the last of its state.
   bool heard_anything_ = false;
-  int failures_ = 0;
-  steady_clock::time_point last_message_ = steady_clock::now();
-  std::minstd_rand random_{std::random_device()()};
 };
 
 }  // namespace
@@ -139,11 +108,6 @@ bool HasEnded(v1::Job::State state) {
 
 absl::StatusOr<v1::Job> WatchJob(Connection& connection, const std::string& name, const WatchOptions& options) {
   return Watch(connection, name, options).Run();
-}
-
-milliseconds Backoff(int failures, double chance) {
-  const double whole = std::min(2000.0, 50.0 * static_cast<double>(1 << std::clamp(failures - 1, 0, 10)));
-  return milliseconds(static_cast<long>(whole * (0.5 + 0.5 * chance)));
 }
 
 }  // namespace flatlight

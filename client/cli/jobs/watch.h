@@ -31,10 +31,6 @@ bool HasEnded(v1::Job::State state);
 // Watches a job until it has ended and returns it. INTERRUPTED after a signal; the job goes on.
 absl::StatusOr<v1::Job> WatchJob(Connection& connection, const std::string& name, const WatchOptions& options);
 
-// The wait before try number `failures` (from 1): doubles from 50 ms to 2 s, of which a part in [1/2, 1] given by
-// `chance` in [0, 1), so that many watchers of a server that comes back do not call in step.
-std::chrono::milliseconds Backoff(int failures, double chance);
-
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_CLIENT_CLI_JOBS_WATCH_H_

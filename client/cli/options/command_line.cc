@@ -18,6 +18,7 @@ struct Raw {
   CommandLine line;
   SettingsOptions settings;
   BenchTexts bench;
+  RoomTexts room;
   std::optional<std::string> picture;
   std::optional<std::string> tolerance;
   std::optional<std::string> prune;
@@ -202,15 +203,19 @@ void AddSceneCommands(CLI::App& app, Raw& raw) {
   AddServer(scenes, raw);
 }
 
+void AddGrantees(CLI::App& command, Raw& raw) {
+  command.add_option("--with", raw.line.grantees, "user:NAME, group:NAME or course (everybody); may be repeated")
+      ->required()
+      ->type_name("WHOM")
+      ->allow_extra_args(false);
+}
+
 void AddSharing(CLI::App& app, Raw& raw) {
   for (const auto& [name, what] : {std::pair("share", "let others see a job"), std::pair("unshare", "end that")}) {
     const bool share = std::string(name) == "share";
     CLI::App& command = AddCommand(app, name, what, share ? kShareHelp : kJobHelp);
     AddJob(command, raw);
-    command.add_option("--with", raw.line.grantees, "user:NAME, group:NAME or course (everybody); may be repeated")
-        ->required()
-        ->type_name("WHOM")
-        ->allow_extra_args(false);
+    AddGrantees(command, raw);
     if (share) command.add_flag("--control", raw.line.control, "they may also cancel, pause and resume it");
     AddJson(command, raw, "the job");
     AddQuiet(command, raw);
@@ -253,6 +258,42 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   }
   for (CLI::App* command : {&watch, &jobs, &top, &show, &fetch}) AddServer(*command, raw);
   AddSharing(app, raw);
+}
+
+void AddRoomCommands(CLI::App& app, Raw& raw) {
+  CLI::App& rooms = AddCommand(app, "room", "review a job together: one shows, all write notes", kRoomHelp);
+  rooms.require_subcommand(1);
+  const auto add = [&](const std::string& name, const std::string& what, bool of_room = true) -> CLI::App& {
+    CLI::App& command = AddCommand(rooms, name, what);
+    if (of_room) command.add_option("ROOM", raw.room.room, "rooms/UUID, the UUID, or its beginning")->required();
+    AddServer(command, raw);
+    return command;
+  };
+  CLI::App& create = add("create", "make a room", false);
+  create.add_option("TITLE", raw.room.title, "what it is about")->required();
+  CLI::App& list = add("list", "list the rooms that you may enter", false);
+  CLI::App& show = add("show", "show a room and its notes");
+  CLI::App& watch = add("watch", "follow a room until it is closed");
+  watch.add_flag("--json", raw.line.json, "print each update as a line of JSON");
+  CLI::App& note = add("note", "write a note");
+  note.add_option("TEXT", raw.room.text, "the note")->required();
+  note.add_option("--at", raw.room.at, "a place in the scene, in m")->type_name("X,Y");
+  CLI::App& look = add("look", "change what all look at; what is not given stays");
+  look.add_option("--job", raw.room.job, "a job that you may share; empty: none")->type_name("JOB");
+  look.add_option("--probe", raw.room.probe, "one of its probes; empty: all")->type_name("NAME");
+  look.add_option("--point", raw.room.point, "one of the probe's points, from 0")->type_name("N");
+  look.add_option("--exposure", raw.room.exposure, "stops, -32 to 32")->type_name("S");
+  look.add_option("--tone-mapping", raw.room.tone_mapping, "photographic or linear")->type_name("NAME");
+  CLI::App& share = add("share", "let others in");
+  CLI::App& unshare = add("unshare", "end that");
+  for (CLI::App* command : {&share, &unshare}) AddGrantees(*command, raw);
+  share.add_flag("--control", raw.line.control, "they may also change what is looked at");
+  CLI::App& close = add("close", "end a room: it can be read, and nothing more");
+  for (CLI::App* command : {&create, &share, &unshare, &look, &close}) AddJson(*command, raw, "the room");
+  AddJson(list, raw, "the list");
+  AddJson(show, raw, "room and notes");
+  AddJson(note, raw, "the note");
+  add("delete", "remove a room with its notes");
 }
 
 void AddCompare(CLI::App& app, Raw& raw) {
@@ -327,6 +368,9 @@ absl::StatusOr<CommandLine> Finish(const CLI::App& app, Raw& raw) {
   absl::StatusOr<BenchOptions> bench = ParseBenchOptions(raw.bench);
   if (!bench.ok()) return bench.status();
   raw.line.bench = *std::move(bench);
+  absl::StatusOr<RoomOptions> room = ParseRoomOptions(raw.room);
+  if (!room.ok()) return room.status();
+  raw.line.room = *std::move(room);
   absl::StatusOr<v1::Settings> settings = ParseSettings(raw.settings);
   if (!settings.ok()) return settings.status();
   if (raw.picture) {
@@ -366,6 +410,7 @@ absl::StatusOr<CommandLine> ParseCommandLine(int argc, const char* const* argv, 
   AddServer(app, raw);
   AddSceneCommands(app, raw);
   AddJobCommands(app, raw);
+  AddRoomCommands(app, raw);
   AddCompare(app, raw);
   AddFigure(app, raw);
   AddBench(app, raw);

@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/cli/options/bench_options.h"
+#include "client/cli/options/room_options.h"
 #include "client/cli/tls/tls.h"
 #include "flatlight/v1/render_service.pb.h"
 #include "flatlight/v1/scene.pb.h"
@@ -42,6 +43,7 @@ struct CommandLine {
   std::vector<std::string> outputs;
   std::vector<std::string> results;  // The two files of `compare` and of `bench compare`.
   std::optional<double> tolerance;   // Of `compare`.
+  RoomOptions room;                  // Of `room`.
   BenchOptions bench;                // Of `bench` and `bench compare`.
 };
 

@@ -90,6 +90,16 @@ Examples:
   flatlight share 3f2a --with group:lab-1 --with user:bob --control
   flatlight unshare 3f2a --with group:lab-1)";
 
+inline constexpr char kRoomHelp[] =
+    R"(As long as a room is open and looks at a job, all who are in the room may see, watch and fetch that job.
+
+Examples:
+  flatlight room create "Lab 3: penumbras"
+  flatlight room share 3f2a --with group:lab-3
+  flatlight room look 3f2a --job 81c0 --probe floor --point 120 --exposure 1.5
+  flatlight room watch 3f2a
+  flatlight room note 3f2a "here the lamp is hidden in part" --at 0.5,0)";
+
 inline constexpr char kCompareHelp[] =
     R"(A and B are results in JSON form with the same probes at the same points; B is the reference. Printed for irradiance and, if
 both have them, derivatives of each probe:

@@ -9,7 +9,7 @@ import sys
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from cli_case import FLATLIGHTD, CliCase  # noqa: E402
+from cli_case import FLATLIGHT, FLATLIGHTD, CliCase  # noqa: E402
 from daemon import Daemon  # noqa: E402
 
 
@@ -82,7 +82,7 @@ class UsersTest(CliCase):
 
             self.as_user(ada, "share", job, "--with", "group:lab-1", "--control", "--quiet")
             self.assertIn("paused", self.as_user(bob, "pause", start).stdout)
-            self.assertIn("not delete or share it", self.as_user(bob, "unshare", job, "--with", "user:cyd", status=4).stderr)
+            self.assertIn("not delete, share or show it", self.as_user(bob, "unshare", job, "--with", "user:cyd", status=4).stderr)
             left = json.loads(self.as_user(ada, "unshare", job, "--with", "group:lab-1", "--json").stdout)
             self.assertEqual(left["shares"], [{"grantee": "user:cyd", "access": "READ"}])
             self.assertIn("does not exist", self.as_user(bob, "show", job, status=2).stderr)
@@ -95,6 +95,55 @@ class UsersTest(CliCase):
             self.assertIn("--with", self.as_user(ada, "share", job, status=2).stderr)
             self.assertIn("excludes", self.as_user(ada, "jobs", "--shared", "--prune", "1d", status=2).stderr)
             self.as_user(ada, "cancel", job)
+
+    def test_a_room_reviews_a_job(self):
+        tokens = self.tokens("ina", "--role", "instructor") | self.tokens("ada", "--group", "lab-1") | self.tokens("bob")
+        ina, ada, bob = tokens["ina"], tokens["ada"], tokens["bob"]
+        data = ("--data", self.path("data"))
+        with Daemon(FLATLIGHTD, arguments=data) as daemon:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            job = self.as_user(bob, "submit", "gallery:unit-light", "--quiet").stdout.strip()
+            room = self.as_user(ina, "room", "create", "Lab 3").stdout.strip()
+            self.assertRegex(room, "^rooms/[0-9a-f-]{36}$")
+            start = room[6:14]
+            self.assertIn("shared with group:lab-1 (read)",
+                          self.as_user(ina, "room", "share", start, "--with", "group:lab-1").stdout)
+            self.assertIn("does not exist", self.as_user(ada, "show", job, status=2).stderr)
+            looks = self.as_user(ina, "room", "look", start, "--job", job, "--probe", "floor", "--point", "7", "--exposure",
+                                 "-1.5", "--tone-mapping", "linear").stdout
+            self.assertEqual(looks, f"looks at {job} floor point 7, -1.5 stops, linear\n")
+            self.as_user(ada, "show", job)
+            note = self.as_user(ada, "room", "note", start, "here it is dark", "--at", "0.5,-1").stdout
+            self.assertRegex(note, r"^\S+Z ada: here it is dark \(at 0.5,-1\)\n$")
+            shown = self.as_user(ada, "room", "show", start).stdout
+            self.assertTrue(shown.endswith("\n\n" + note), shown)
+            self.assertNotIn("lab-1", shown)
+            self.assertIn("lab-1", self.as_user(ina, "room", "show", start).stdout)
+            self.assertIn("Lab 3", self.as_user(ada, "room", "list").stdout)
+            self.assertEqual(self.as_user(bob, "room", "list").stdout, "no rooms\n")
+            self.assertIn("does not exist", self.as_user(bob, "room", "watch", room, status=2).stderr)
+            self.assertIn("may watch it", self.as_user(ada, "room", "close", room, status=4).stderr)
+            # A watch goes on over a restart of the server.
+            watch = subprocess.Popen([FLATLIGHT, "room", "watch", room], stdout=subprocess.PIPE, text=True,
+                                     env=self.environment | {"FLATLIGHT_TOKEN": ada}, cwd=self.folder)
+            self.assertEqual(watch.stdout.readline(), note)
+            self.assertEqual(watch.stdout.readline(), looks)
+        with Daemon(FLATLIGHTD, listen=daemon.address, arguments=data):
+            again = self.as_user(ina, "room", "note", room, "so it is").stdout
+            self.assertEqual(watch.stdout.readline(), again)
+            self.as_user(ina, "room", "look", room, "--job", "")
+            self.assertEqual(watch.stdout.readline(), "looks at nothing\n")
+            self.assertEqual(self.as_user(ina, "room", "close", room).stdout, f"{room} closed\n")
+            self.assertEqual(watch.communicate(timeout=60)[0], "closed\n")
+            self.assertEqual(watch.returncode, 0)
+            whole = json.loads(self.as_user(ada, "room", "show", room, "--json").stdout)
+            self.assertEqual([entry["text"] for entry in whole["notes"]], ["here it is dark", "so it is"])
+            self.assertIn("is closed", self.as_user(ada, "room", "note", room, "late", status=2).stderr)
+            for wrong in (["--point", "x"], ["--exposure", "bright"], ["--tone-mapping", "square"]):
+                self.assertIn(wrong[0], self.as_user(ina, "room", "look", room, *wrong, status=2).stderr)
+            self.assertIn("X,Y", self.as_user(ina, "room", "note", room, "x", "--at", "1", status=2).stderr)
+            self.as_user(ina, "room", "delete", room)
+            self.assertEqual(self.as_user(ina, "room", "list").stdout, "no rooms\n")
 
     def test_mistakes(self):
         self.assertIn("NAME or --roster", self.user("add", status=2).stderr)

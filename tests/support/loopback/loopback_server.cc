@@ -20,6 +20,7 @@ LoopbackServer::LoopbackServer(const ServerOptions& options) {
   render_ = v1::RenderService::NewStub(channel_);
   scenes_ = v1::SceneService::NewStub(channel_);
   info_ = v1::ServerService::NewStub(channel_);
+  review_ = v1::ReviewService::NewStub(channel_);
 }
 
 std::shared_ptr<grpc::Channel> LoopbackServer::NewChannel() const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flatlight/v1/render_service.grpc.pb.h"
+#include "flatlight/v1/review_service.grpc.pb.h"
 #include "flatlight/v1/scene_service.grpc.pb.h"
 #include "flatlight/v1/server_service.grpc.pb.h"
 #include "google/rpc/error_details.pb.h"
@@ -31,6 +32,7 @@ class LoopbackServer {
   v1::RenderService::Stub& render() { return *render_; }
   v1::SceneService::Stub& scenes() { return *scenes_; }
   v1::ServerService::Stub& info() { return *info_; }
+  v1::ReviewService::Stub& review() { return *review_; }
 
  private:
   std::unique_ptr<Server> server_;
@@ -38,6 +40,7 @@ class LoopbackServer {
   std::unique_ptr<v1::RenderService::Stub> render_;
   std::unique_ptr<v1::SceneService::Stub> scenes_;
   std::unique_ptr<v1::ServerService::Stub> info_;
+  std::unique_ptr<v1::ReviewService::Stub> review_;
 };
 
 // A context with a deadline that only a hanging server reaches.

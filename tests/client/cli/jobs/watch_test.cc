@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "client/cli/jobs/comeback.h"
 #include "client/cli/jobs/job_calls.h"
 #include "client/cli/jobs/job_name.h"
 
