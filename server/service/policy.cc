@@ -40,12 +40,11 @@ const std::vector<PolicyRow>& Policy() {
       {"WatchRoomRequest", Role::kStudent},
       {"CloseRoomRequest", Role::kStudent},
       {"DeleteRoomRequest", Role::kStudent},
-      // An uploaded scene is named by the hash of its bytes: who knows the name has had the scene. Students are not
-      // listed the uploads, and do not delete what another may have uploaded too.
+      // Who has uploaded the scene decides the rest: MaySeeScene, DeleteSeenScene.
       {"UploadSceneRequest", Role::kStudent},
       {"GetSceneRequest", Role::kStudent},
       {"ListScenesRequest", Role::kStudent},
-      {"DeleteSceneRequest", Role::kInstructor},
+      {"DeleteSceneRequest", Role::kStudent},
       {"ValidateSceneRequest", Role::kStudent},
       {"GetCapabilitiesRequest", Role::kStudent},
       {"GetActivityRequest", Role::kStudent},  // Students see others only as numbers.
@@ -60,6 +59,17 @@ absl::Status CheckRole(const Caller& caller, std::string_view request) {
   if (caller.role >= row->least) return absl::OkStatus();
   return Denied("ROLE_TOO_LOW", "this call is for the role " + std::string(RoleName(row->least)) + " and above; " +
                                     caller.name + " is a " + std::string(RoleName(caller.role)));
+}
+
+bool MaySeeScene(const Caller& caller, const std::string& sha256, SceneStore& scenes) {
+  return caller.role >= Role::kGrader || scenes.Owns(caller.name, sha256);
+}
+
+absl::Status DeleteSeenScene(const Caller& caller, const std::string& sha256, SceneStore& scenes) {
+  if (caller.role >= Role::kInstructor) return scenes.Delete(sha256);
+  absl::Status disowned = scenes.Disown(caller.name, sha256);
+  if (!absl::IsNotFound(disowned) || !MaySeeScene(caller, sha256, scenes)) return disowned;
+  return Denied("NOT_YOUR_SCENE", "scenes/" + sha256 + " is not yours: you may read it, but not delete it");
 }
 
 }  // namespace flatlight

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may call what: the one table that every call is held against.
+// Who may call what: the one table that every call is held against; and the rules about whose a scene is. (Of jobs:
+// JobAccess.)
 #ifndef FLATLIGHT_SERVER_SERVICE_POLICY_H_
 #define FLATLIGHT_SERVER_SERVICE_POLICY_H_
 
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "server/store/scene_store.h"
 #include "server/store/user_store.h"
 
 namespace flatlight {
@@ -27,6 +29,13 @@ const std::vector<PolicyRow>& Policy();
 
 // OK, or PERMISSION_DENIED with ROLE_TOO_LOW; also where the table has no row.
 absl::Status CheckRole(const Caller& caller, std::string_view request);
+
+// Of uploaded scenes: one's own uploads, and all of them for graders, instructors and admins. The hash alone opens
+// nothing.
+bool MaySeeScene(const Caller& caller, const std::string& sha256, SceneStore& scenes);
+// Deletes an uploaded scene: one's own upload, for an instructor or admin everybody's. One that is seen, but not one's
+// own, is PERMISSION_DENIED with NOT_YOUR_SCENE.
+absl::Status DeleteSeenScene(const Caller& caller, const std::string& sha256, SceneStore& scenes);
 
 }  // namespace flatlight
 

@@ -40,11 +40,12 @@ void DropRepeats(std::vector<std::string>& names) {
 }
 
 // Every mistake of the scene and of the settings is reported at once.
-absl::StatusOr<PlannedScene> MakePlannedScene(Backend& backend, const v1::SceneSource& source,
+absl::StatusOr<PlannedScene> MakePlannedScene(Backend& backend, const Caller& caller, const v1::SceneSource& source,
                                               const v1::Settings& settings, const Proceed& proceed) {
   PlannedScene planned;
   Diagnostics scene_diagnostics;
-  auto scene = LoadScene(source, {backend.scenes, backend.built_scenes, backend.limits}, proceed, scene_diagnostics);
+  auto scene =
+      LoadScene(source, {caller, backend.scenes, backend.built_scenes, backend.limits}, proceed, scene_diagnostics);
   if (!scene.ok()) return scene.status();
   planned.scene = *std::move(scene);
   Diagnostics diagnostics = scene_diagnostics;
@@ -83,10 +84,10 @@ std::string Sharers(Backend& backend, const v1::CreateJobRequest& request, const
   return "user " + owner;
 }
 
-// The job that a request asks for.
-absl::StatusOr<JobRun::Restored> MakeJob(Backend& backend, const v1::CreateJobRequest& request, JobSpec spec,
-                                         const Proceed& proceed) {
-  auto planned = MakePlannedScene(backend, request.scene(), request.settings(), proceed);
+// The job that a request of `caller` asks for.
+absl::StatusOr<JobRun::Restored> MakeJob(Backend& backend, const Caller& caller, const v1::CreateJobRequest& request,
+                                         JobSpec spec, const Proceed& proceed) {
+  auto planned = MakePlannedScene(backend, caller, request.scene(), request.settings(), proceed);
   if (!planned.ok()) return planned.status();
   if (request.has_records()) {
     auto taken = TakeRecords(request.records(), *planned->scene, planned->plan);
@@ -193,7 +194,7 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
   spec.owner = caller.name;
   spec.job_class = *job_class;
   spec.create_time = std::chrono::system_clock::now();
-  auto made = MakeJob(backend, *whole, std::move(spec), proceed);
+  auto made = MakeJob(backend, caller, *whole, std::move(spec), proceed);
   if (!made.ok()) return made.status();
   absl::StatusOr<Submission> submission = Submission{};
   if (backend.jobs.durable()) submission = MakeSubmission(backend, *whole);
@@ -223,7 +224,9 @@ absl::StatusOr<JobRun::Restored> RestoreJob(Backend& backend, JobArchive& archiv
   spec.owner = accepted.owner;
   spec.job_class = accepted.job_class;
   spec.create_time = accepted.create_time;
-  auto made = MakeJob(backend, request, std::move(spec), [] { return absl::OkStatus(); });
+  // It carries its scene, unless that is of the gallery: whatever has become of uploads, and of the owner's role.
+  auto made =
+      MakeJob(backend, {accepted.owner, Role::kStudent}, request, std::move(spec), [] { return absl::OkStatus(); });
   if (!made.ok()) return made.status();
   // Without its checkpoint a job begins anew, and ends with the same bits.
   if (auto checkpoint = archive.FetchCheckpoint(accepted.id); checkpoint.ok()) {
@@ -299,9 +302,9 @@ absl::StatusOr<v1::Job> UnshareJob(Backend& backend, const Caller& caller, const
                       [&](const JobId& id) { return backend.jobs.Unshare(id, *grantee); });
 }
 
-absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const v1::ExplainJobRequest& request,
-                                                  const Proceed& proceed) {
-  const auto planned = MakePlannedScene(backend, request.scene(), request.settings(), proceed);
+absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const Caller& caller,
+                                                  const v1::ExplainJobRequest& request, const Proceed& proceed) {
+  const auto planned = MakePlannedScene(backend, caller, request.scene(), request.settings(), proceed);
   if (!planned.ok()) return planned.status();
   v1::ExplainJobResponse response;
   *response.mutable_plan() = PlanToProto(planned->plan);

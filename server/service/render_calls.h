@@ -25,8 +25,8 @@ absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const Caller& 
                                                 const v1::DeleteJobRequest& request);
 absl::StatusOr<v1::Job> ShareJob(Backend& backend, const Caller& caller, const v1::ShareJobRequest& request);
 absl::StatusOr<v1::Job> UnshareJob(Backend& backend, const Caller& caller, const v1::UnshareJobRequest& request);
-absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const v1::ExplainJobRequest& request,
-                                                  const Proceed& proceed);
+absl::StatusOr<v1::ExplainJobResponse> ExplainJob(Backend& backend, const Caller& caller,
+                                                  const v1::ExplainJobRequest& request, const Proceed& proceed);
 
 }  // namespace flatlight
 

@@ -91,8 +91,9 @@ grpc::ServerUnaryReactor* RenderService::UnshareJob(Context* context, const Byte
 grpc::ServerUnaryReactor* RenderService::ExplainJob(Context* context, const Bytes* request, Bytes* response) {
   const auto lane = [this](const v1::ExplainJobRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
   return Answer<v1::ExplainJobRequest>(backend_, context, request, response, lane,
-                                       [this, context](const Caller&, const v1::ExplainJobRequest& r) {
-                                         return flatlight::ExplainJob(backend_, r, WhileWanted(backend_, *context));
+                                       [this, context](const Caller& caller, const v1::ExplainJobRequest& r) {
+                                         return flatlight::ExplainJob(backend_, caller, r,
+                                                                      WhileWanted(backend_, *context));
                                        });
 }
 

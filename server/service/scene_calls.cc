@@ -37,9 +37,10 @@ void AddGallery(std::uint64_t position, std::size_t size, v1::ListScenesResponse
 
 }  // namespace
 
-absl::StatusOr<v1::UploadSceneResponse> UploadScene(Backend& backend, const v1::UploadSceneRequest& request) {
+absl::StatusOr<v1::UploadSceneResponse> UploadScene(Backend& backend, const Caller& caller,
+                                                    const v1::UploadSceneRequest& request) {
   const auto received =
-      backend.scenes.Upload(request.sha256(), request.total_bytes(), request.offset(), request.data());
+      backend.scenes.Upload(caller.name, request.sha256(), request.total_bytes(), request.offset(), request.data());
   if (!received.ok()) return received.status();
   v1::UploadSceneResponse response;
   response.set_name("scenes/" + request.sha256());
@@ -47,8 +48,9 @@ absl::StatusOr<v1::UploadSceneResponse> UploadScene(Backend& backend, const v1::
   return response;
 }
 
-absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const v1::GetSceneRequest& request) {
-  auto scene = FindScene(request.name(), backend.scenes);
+absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const Caller& caller,
+                                              const v1::GetSceneRequest& request) {
+  auto scene = FindSeenScene(caller, request.name(), backend.scenes);
   if (!scene.ok()) return scene.status();
   v1::GetSceneResponse response;
   Diagnostics diagnostics;
@@ -56,6 +58,7 @@ absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const v1::GetSce
     return MakeDiagnosticsError("BAD_SCENE", "the scene", diagnostics);
   }
   *response.mutable_info() = std::move(scene->info);
+  if (!response.info().gallery()) response.mutable_info()->set_title(response.scene().name());
   return response;
 }
 
@@ -67,11 +70,12 @@ absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const Caller
   v1::ListScenesResponse response;
   if (position < kUploads) AddGallery(position, page->size, response);
   if (!response.next_page_token().empty()) return response;
-  if (caller.role < Role::kGrader) return response;  // A name is all it takes to read an upload.
+  std::optional<std::string> owner;
+  if (caller.role < Role::kGrader) owner = caller.name;
   std::optional<std::uint64_t> before;
   if (position > kUploads) before = position - kUploads;
   const std::size_t room = page->size - static_cast<std::size_t>(response.scenes_size());
-  const ScenePage uploads = backend.scenes.List(before, std::max<std::size_t>(room, 1));
+  const ScenePage uploads = backend.scenes.List(owner, before, std::max<std::size_t>(room, 1));
   if (room == 0) {
     if (!uploads.scenes.empty()) response.set_next_page_token(PageToken(kUploads));
     return response;
@@ -86,24 +90,26 @@ absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const Caller
   return response;
 }
 
-absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const v1::DeleteSceneRequest& request) {
-  const auto scene = FindScene(request.name(), backend.scenes);
+absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const Caller& caller,
+                                                    const v1::DeleteSceneRequest& request) {
+  const auto scene = FindSeenScene(caller, request.name(), backend.scenes);
   if (!scene.ok()) return scene.status();
   if (scene->info.gallery()) {
     return MakeError(absl::StatusCode::kFailedPrecondition, "GALLERY_SCENE",
                      request.name() + " belongs to the gallery and stays");
   }
   const std::string sha256 = request.name().substr(std::string("scenes/").size());
-  if (absl::Status deleted = backend.scenes.Delete(sha256); !deleted.ok()) return deleted;
-  backend.built_scenes.Drop(sha256);
+  if (absl::Status deleted = DeleteSeenScene(caller, sha256, backend.scenes); !deleted.ok()) return deleted;
+  if (!backend.scenes.Get(sha256).ok()) backend.built_scenes.Drop(sha256);
   return v1::DeleteSceneResponse();
 }
 
-absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const v1::ValidateSceneRequest& request,
+absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const Caller& caller,
+                                                        const v1::ValidateSceneRequest& request,
                                                         const Proceed& proceed) {
   Diagnostics diagnostics;
   const auto scene =
-      LoadScene(request.scene(), {backend.scenes, backend.built_scenes, backend.limits}, proceed, diagnostics);
+      LoadScene(request.scene(), {caller, backend.scenes, backend.built_scenes, backend.limits}, proceed, diagnostics);
   if (!scene.ok()) return scene.status();
   v1::ValidateSceneResponse response;
   for (const Diagnostic& diagnostic : diagnostics.kept()) {

@@ -11,12 +11,16 @@
 namespace flatlight {
 
 // The calls of SceneService and ServerService as plain functions.
-absl::StatusOr<v1::UploadSceneResponse> UploadScene(Backend& backend, const v1::UploadSceneRequest& request);
-absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const v1::GetSceneRequest& request);
+absl::StatusOr<v1::UploadSceneResponse> UploadScene(Backend& backend, const Caller& caller,
+                                                    const v1::UploadSceneRequest& request);
+absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const Caller& caller,
+                                              const v1::GetSceneRequest& request);
 absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const Caller& caller,
                                                   const v1::ListScenesRequest& request);
-absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const v1::DeleteSceneRequest& request);
-absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const v1::ValidateSceneRequest& request,
+absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const Caller& caller,
+                                                    const v1::DeleteSceneRequest& request);
+absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const Caller& caller,
+                                                        const v1::ValidateSceneRequest& request,
                                                         const Proceed& proceed);
 v1::GetCapabilitiesResponse GetCapabilities(const Backend& backend);
 

@@ -15,16 +15,17 @@ constexpr auto kQuickLane = [](const auto&) { return Lane::kQuick; };
 }  // namespace
 
 grpc::ServerUnaryReactor* SceneService::UploadScene(Context* context, const Bytes* request, Bytes* response) {
-  return Answer<v1::UploadSceneRequest>(
-      backend_, context, request, response, kQuickLane,
-      [this](const Caller&, const v1::UploadSceneRequest& r) { return flatlight::UploadScene(backend_, r); });
+  return Answer<v1::UploadSceneRequest>(backend_, context, request, response, kQuickLane,
+                                        [this](const Caller& caller, const v1::UploadSceneRequest& r) {
+                                          return flatlight::UploadScene(backend_, caller, r);
+                                        });
 }
 
 grpc::ServerUnaryReactor* SceneService::GetScene(Context* context, const Bytes* request, Bytes* response) {
   const auto lane = [this](const v1::GetSceneRequest& r) { return LaneOf(r.name(), backend_.scenes); };
   return Answer<v1::GetSceneRequest>(
       backend_, context, request, response, lane,
-      [this](const Caller&, const v1::GetSceneRequest& r) { return flatlight::GetScene(backend_, r); });
+      [this](const Caller& caller, const v1::GetSceneRequest& r) { return flatlight::GetScene(backend_, caller, r); });
 }
 
 grpc::ServerUnaryReactor* SceneService::ListScenes(Context* context, const Bytes* request, Bytes* response) {
@@ -35,17 +36,19 @@ grpc::ServerUnaryReactor* SceneService::ListScenes(Context* context, const Bytes
 }
 
 grpc::ServerUnaryReactor* SceneService::DeleteScene(Context* context, const Bytes* request, Bytes* response) {
-  return Answer<v1::DeleteSceneRequest>(
-      backend_, context, request, response, kQuickLane,
-      [this](const Caller&, const v1::DeleteSceneRequest& r) { return flatlight::DeleteScene(backend_, r); });
+  return Answer<v1::DeleteSceneRequest>(backend_, context, request, response, kQuickLane,
+                                        [this](const Caller& caller, const v1::DeleteSceneRequest& r) {
+                                          return flatlight::DeleteScene(backend_, caller, r);
+                                        });
 }
 
 grpc::ServerUnaryReactor* SceneService::ValidateScene(Context* context, const Bytes* request, Bytes* response) {
   const auto lane = [this](const v1::ValidateSceneRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
-  return Answer<v1::ValidateSceneRequest>(
-      backend_, context, request, response, lane, [this, context](const Caller&, const v1::ValidateSceneRequest& r) {
-        return flatlight::ValidateScene(backend_, r, WhileWanted(backend_, *context));
-      });
+  return Answer<v1::ValidateSceneRequest>(backend_, context, request, response, lane,
+                                          [this, context](const Caller& caller, const v1::ValidateSceneRequest& r) {
+                                            return flatlight::ValidateScene(backend_, caller, r,
+                                                                            WhileWanted(backend_, *context));
+                                          });
 }
 
 grpc::ServerUnaryReactor* ServerService::GetCapabilities(grpc::CallbackServerContext* context,

@@ -64,6 +64,14 @@ absl::StatusOr<NamedScene> FindScene(const std::string& name, SceneStore& scenes
   return scene;
 }
 
+absl::StatusOr<NamedScene> FindSeenScene(const Caller& caller, const std::string& name, SceneStore& scenes) {
+  auto scene = FindScene(name, scenes);
+  if (!scene.ok() || scene->info.gallery()) return scene;
+  const std::string sha256 = name.substr(kPrefix.size());
+  if (!MaySeeScene(caller, sha256, scenes)) return NoSuchScene(sha256);
+  return scene;
+}
+
 namespace {
 
 // In place of the scene's own, if there are any.
@@ -74,18 +82,18 @@ void ReplaceProbes(const v1::SceneSource& source, v1::Scene& scene) {
 absl::StatusOr<std::shared_ptr<const Scene>> LoadNamed(const v1::SceneSource& source, const SceneShelf& shelf,
                                                        const Proceed& proceed, Diagnostics& diagnostics) {
   const std::string& name = source.name();
-  const auto named = FindScene(name, shelf.uploads);
+  const auto named = FindSeenScene(shelf.caller, name, shelf.uploads);
   if (!named.ok()) return named.status();
   const std::string id = name.substr(kPrefix.size());
   const bool as_stored = source.probes().empty();
   if (auto built = as_stored ? shelf.built.Get(id) : nullptr) {
-    shelf.uploads.SetTitle(id, built->name());  // The file may have been deleted and uploaded again.
+    shelf.uploads.SetTitle(shelf.caller.name, id, built->name());  // The file may have been deleted and uploaded again.
     return built;
   }
   if (absl::Status wanted = proceed(); !wanted.ok()) return wanted;
   v1::Scene proto;
   ReadSceneJson(*named->json, proto, diagnostics);  // Mistakes of form do not hide those of meaning.
-  if (!named->info.gallery()) shelf.uploads.SetTitle(id, proto.name());
+  if (!named->info.gallery()) shelf.uploads.SetTitle(shelf.caller.name, id, proto.name());
   ReplaceProbes(source, proto);
   if (!WithinLimits(proto, shelf.limits, diagnostics)) return nullptr;
   if (absl::Status wanted = proceed(); !wanted.ok()) return wanted;

@@ -13,6 +13,7 @@
 #include "flatlight/v1/scene.pb.h"
 #include "flatlight/v1/scene_service.pb.h"
 #include "server/service/limits.h"
+#include "server/service/policy.h"
 #include "server/service/scene_cache.h"
 #include "server/store/scene_store.h"
 
@@ -24,13 +25,17 @@ struct NamedScene {
   std::shared_ptr<const std::string> json;
 };
 
-// INVALID_ARGUMENT if `name` is not scenes/{scene}, NOT_FOUND if there is none.
+// Whoever has it. INVALID_ARGUMENT if `name` is not scenes/{scene}, NOT_FOUND if there is none.
 absl::StatusOr<NamedScene> FindScene(const std::string& name, SceneStore& scenes);
+// Uploads that the caller may not see are NOT_FOUND, in the very words of those that are not there.
+absl::StatusOr<NamedScene> FindSeenScene(const Caller& caller, const std::string& name, SceneStore& scenes);
 
 // Asked before each phase that may take seconds: is the work still wanted? The error says why not.
 using Proceed = std::function<absl::Status()>;
 
+// What `caller` may take scenes from.
 struct SceneShelf {
+  const Caller& caller;
   SceneStore& uploads;
   SceneCache& built;
   const Limits& limits;

@@ -6,7 +6,24 @@
 
 namespace flatlight {
 
+namespace {
+
+using Writing = Storage::Writing;
+
+absl::Status Remove(Writing& writing, const std::string& sha256) {
+  absl::Status removed = writing.Prepare("DELETE FROM scenes WHERE sha256 = ?").Bind(std::string_view(sha256)).Run();
+  if (!removed.ok() || writing.database().changed_rows() == 0) return removed;
+  return writing.Release(sha256);
+}
+
+}  // namespace
+
 absl::Status DurableSceneStore::Restore() {
+  if (absl::Status restored = RestoreScenes(); !restored.ok()) return restored;
+  return RestoreOwners();
+}
+
+absl::Status DurableSceneStore::RestoreScenes() {
   std::vector<std::pair<std::string, std::string>> scenes;  // Hash and title.
   absl::Status listed = storage_.Read([&](Database& database) -> absl::Status {
     Statement rows = database.Prepare("SELECT sha256, title FROM scenes ORDER BY number");
@@ -18,65 +35,106 @@ absl::Status DurableSceneStore::Restore() {
     }
   });
   if (!listed.ok()) return listed;
-  for (const auto& [sha256, title] : scenes) {
-    const auto bytes = storage_.Fetch(sha256);
+  for (auto& [sha256, title] : scenes) {
+    auto bytes = storage_.Fetch(sha256);
     // A damaged one is missing; those who name it are told so, and upload it again.
     if (absl::IsDataLoss(bytes.status())) continue;
     if (!bytes.ok()) return bytes.status();
-    if (const auto taken = memory_.Upload(sha256, bytes->size(), 0, *bytes); !taken.ok()) return taken.status();
-    memory_.SetTitle(sha256, title);
+    memory_.Add({sha256, std::move(title), std::make_shared<const std::string>(*std::move(bytes))});
   }
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::uint64_t> DurableSceneStore::Upload(const std::string& sha256, std::uint64_t total_bytes,
-                                                        std::uint64_t offset, std::string_view data) {
-  auto there = memory_.Upload(sha256, total_bytes, offset, data);
+absl::Status DurableSceneStore::RestoreOwners() {
+  return storage_.Read([&](Database& database) -> absl::Status {
+    Statement rows = database.Prepare("SELECT owner, sha256, title FROM scene_owners ORDER BY number");
+    while (true) {
+      const auto row = rows.Step();
+      if (!row.ok()) return row.status();
+      if (!*row) return absl::OkStatus();
+      memory_.AddOwner(rows.Bytes(0), rows.Bytes(1), rows.Bytes(2));
+    }
+  });
+}
+
+absl::StatusOr<std::uint64_t> DurableSceneStore::Upload(const std::string& owner, const std::string& sha256,
+                                                        std::uint64_t total_bytes, std::uint64_t offset,
+                                                        std::string_view data) {
+  auto there = memory_.Upload(owner, sha256, total_bytes, offset, data);
   // A mere question has nothing to complete.
   if (!there.ok() || *there < total_bytes || data.empty()) return there;
   const auto scene = memory_.Get(sha256);
   if (!scene.ok()) return there;
-  if (absl::Status kept = Keep(*scene); !kept.ok()) {
-    memory_.Delete(sha256).IgnoreError();
+  if (absl::Status kept = Keep(owner, *scene); !kept.ok()) {
+    memory_.Disown(owner, sha256).IgnoreError();
     return kept;
   }
   return there;
 }
 
-absl::Status DurableSceneStore::Keep(const StoredScene& scene) {
+absl::Status DurableSceneStore::Keep(const std::string& owner, const StoredScene& scene) {
   const auto blob = storage_.Prepare(scene.sha256, scene.bytes);
   if (!blob.ok()) return blob.status();
-  return storage_.Write([&](Storage::Writing& writing) -> absl::Status {
+  return storage_.Write([&](Writing& writing) -> absl::Status {
     Statement there = writing.Prepare("SELECT 1 FROM scenes WHERE sha256 = ?");
     const auto row = there.Bind(std::string_view(scene.sha256)).Step();
-    if (!row.ok() || *row) return row.status();
-    if (absl::Status used = writing.Use(*blob); !used.ok()) return used;
-    Statement insert = writing.Prepare("INSERT INTO scenes(sha256, title, size) VALUES(?, ?, ?)");
-    insert.Bind(std::string_view(scene.sha256)).Bind(std::string_view(scene.title));
-    return insert.Bind(static_cast<std::int64_t>(scene.bytes->size())).Run();
+    if (!row.ok()) return row.status();
+    if (!*row) {
+      if (absl::Status used = writing.Use(*blob); !used.ok()) return used;
+      Statement insert = writing.Prepare("INSERT INTO scenes(sha256, title, size) VALUES(?, ?, ?)");
+      insert.Bind(std::string_view(scene.sha256)).Bind(std::string_view(scene.title));
+      insert.Bind(static_cast<std::int64_t>(scene.bytes->size()));
+      if (absl::Status inserted = insert.Run(); !inserted.ok()) return inserted;
+    }
+    return writing.Prepare("INSERT OR IGNORE INTO scene_owners(owner, sha256, title) VALUES(?, ?, '')")
+        .Bind(std::string_view(owner))
+        .Bind(std::string_view(scene.sha256))
+        .Run();
   });
 }
 
-void DurableSceneStore::SetTitle(const std::string& sha256, const std::string& title) {
-  const auto before = memory_.Get(sha256);
-  if (!before.ok() || before->title == title) return;
-  memory_.SetTitle(sha256, title);
-  // For people; whoever reads the scene next writes it again.
+bool DurableSceneStore::SetTitle(const std::string& reader, const std::string& sha256, const std::string& title) {
+  if (!memory_.SetTitle(reader, sha256, title)) return false;
+  // For people; if it cannot be written now, whoever reads the scene after a restart writes it.
   storage_
-      .Write([&](Storage::Writing& writing) {
-        return writing.Prepare("UPDATE scenes SET title = ? WHERE sha256 = ?")
+      .Write([&](Writing& writing) -> absl::Status {
+        absl::Status titled = writing.Prepare("UPDATE scenes SET title = ? WHERE sha256 = ?")
+                                  .Bind(std::string_view(title))
+                                  .Bind(std::string_view(sha256))
+                                  .Run();
+        if (!titled.ok()) return titled;
+        return writing.Prepare("UPDATE scene_owners SET title = ? WHERE owner = ? AND sha256 = ?")
             .Bind(std::string_view(title))
+            .Bind(std::string_view(reader))
             .Bind(std::string_view(sha256))
             .Run();
       })
       .IgnoreError();
+  return true;
+}
+
+absl::Status DurableSceneStore::Disown(const std::string& owner, const std::string& sha256) {
+  absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
+    absl::Status disowned = writing.Prepare("DELETE FROM scene_owners WHERE owner = ? AND sha256 = ?")
+                                .Bind(std::string_view(owner))
+                                .Bind(std::string_view(sha256))
+                                .Run();
+    if (!disowned.ok() || writing.database().changed_rows() == 0) return disowned;
+    Statement others = writing.Prepare("SELECT 1 FROM scene_owners WHERE sha256 = ?");
+    const auto row = others.Bind(std::string_view(sha256)).Step();
+    if (!row.ok() || *row) return row.status();
+    return Remove(writing, sha256);
+  });
+  if (!written.ok()) return written;
+  return memory_.Disown(owner, sha256);
 }
 
 absl::Status DurableSceneStore::Delete(const std::string& sha256) {
-  absl::Status written = storage_.Write([&](Storage::Writing& writing) -> absl::Status {
-    absl::Status removed = writing.Prepare("DELETE FROM scenes WHERE sha256 = ?").Bind(std::string_view(sha256)).Run();
-    if (!removed.ok() || writing.database().changed_rows() == 0) return removed;
-    return writing.Release(sha256);
+  absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
+    absl::Status disowned =
+        writing.Prepare("DELETE FROM scene_owners WHERE sha256 = ?").Bind(std::string_view(sha256)).Run();
+    if (!disowned.ok()) return disowned;
+    return Remove(writing, sha256);
   });
   if (!written.ok()) return written;
   return memory_.Delete(sha256);

@@ -18,17 +18,22 @@ class DurableSceneStore final : public SceneStore {
   // Reads the scenes of the process before. To be called once, first.
   absl::Status Restore();
 
-  absl::StatusOr<std::uint64_t> Upload(const std::string& sha256, std::uint64_t total_bytes, std::uint64_t offset,
-                                       std::string_view data) override;
+  absl::StatusOr<std::uint64_t> Upload(const std::string& owner, const std::string& sha256, std::uint64_t total_bytes,
+                                       std::uint64_t offset, std::string_view data) override;
   absl::StatusOr<StoredScene> Get(const std::string& sha256) override { return memory_.Get(sha256); }
-  void SetTitle(const std::string& sha256, const std::string& title) override;
-  ScenePage List(std::optional<std::uint64_t> before, std::size_t limit) override {
-    return memory_.List(before, limit);
+  bool Owns(const std::string& owner, const std::string& sha256) override { return memory_.Owns(owner, sha256); }
+  bool SetTitle(const std::string& reader, const std::string& sha256, const std::string& title) override;
+  ScenePage List(const std::optional<std::string>& owner, std::optional<std::uint64_t> before,
+                 std::size_t limit) override {
+    return memory_.List(owner, before, limit);
   }
+  absl::Status Disown(const std::string& owner, const std::string& sha256) override;
   absl::Status Delete(const std::string& sha256) override;
 
  private:
-  absl::Status Keep(const StoredScene& scene);
+  absl::Status RestoreScenes();
+  absl::Status RestoreOwners();
+  absl::Status Keep(const std::string& owner, const StoredScene& scene);
 
   MemorySceneStore memory_;
   Storage& storage_;

@@ -12,18 +12,15 @@ namespace {
 constexpr std::chrono::minutes kIdle{1};
 constexpr std::chrono::milliseconds kRetryAfter{10'000};
 
-absl::Status NoSuchScene(const std::string& sha256) {
-  return MakeError(absl::StatusCode::kNotFound, "SCENE_NOT_FOUND", "scenes/" + sha256 + " does not exist");
-}
-
 absl::Status BadUpload(const std::string& reason, const std::string& message) {
   return MakeError(absl::StatusCode::kInvalidArgument, reason, message);
 }
 
 }  // namespace
 
-absl::StatusOr<std::uint64_t> MemorySceneStore::Upload(const std::string& sha256, std::uint64_t total_bytes,
-                                                       std::uint64_t offset, std::string_view data) {
+absl::StatusOr<std::uint64_t> MemorySceneStore::Upload(const std::string& owner, const std::string& sha256,
+                                                       std::uint64_t total_bytes, std::uint64_t offset,
+                                                       std::string_view data) {
   if (!IsSha256(sha256)) return BadUpload("BAD_HASH", "sha256 must be 64 lower-case hexadecimal digits");
   if (total_bytes == 0 || total_bytes > limits_.max_scene_bytes) {
     return BadUpload("SCENE_TOO_BIG", "total_bytes is " + std::to_string(total_bytes) + "; allowed: 1 to " +
@@ -32,14 +29,14 @@ absl::StatusOr<std::uint64_t> MemorySceneStore::Upload(const std::string& sha256
   std::shared_ptr<PartialUpload> upload;
   {
     const std::lock_guard lock(mutex_);
-    if (const auto number = numbers_.find(sha256); number != numbers_.end()) {
-      const std::uint64_t there = scenes_.at(number->second).bytes->size();
+    if (const Entry* entry = Find(sha256); entry != nullptr && entry->owners.count(owner) > 0) {
+      const std::uint64_t there = entry->scene.bytes->size();
       if (there == total_bytes) return there;
       return BadUpload("TOTAL_CHANGED", "the scene with this hash has " + std::to_string(there) +
                                             " bytes, not total_bytes = " + std::to_string(total_bytes));
     }
-    if (data.empty() && uploads_.count(sha256) == 0) return std::uint64_t{0};
-    auto opened = OpenUpload(sha256, total_bytes);
+    if (data.empty() && uploads_.count({owner, sha256}) == 0) return std::uint64_t{0};
+    auto opened = OpenUpload({owner, sha256}, total_bytes);
     if (!opened.ok()) return opened.status();
     upload = *opened;
   }
@@ -65,14 +62,14 @@ absl::StatusOr<std::uint64_t> MemorySceneStore::Upload(const std::string& sha256
   if (absl::Status room = Reserve(data.size()); !room.ok()) return room;
   upload->bytes->append(data);
   upload->hash.Add(data);
-  if (upload->bytes->size() == total_bytes) return Complete(sha256, *upload);
+  if (upload->bytes->size() == total_bytes) return Complete({owner, sha256}, *upload);
   return std::uint64_t{upload->bytes->size()};
 }
 
 absl::StatusOr<std::shared_ptr<MemorySceneStore::PartialUpload>> MemorySceneStore::OpenUpload(
-    const std::string& sha256, std::uint64_t total_bytes) {
+    const UploadName& name, std::uint64_t total_bytes) {
   const Clock::Time now = clock_.Now();
-  if (const auto found = uploads_.find(sha256); found != uploads_.end()) {
+  if (const auto found = uploads_.find(name); found != uploads_.end()) {
     found->second->last_use = now;
     return found->second;
   }
@@ -101,7 +98,7 @@ absl::StatusOr<std::shared_ptr<MemorySceneStore::PartialUpload>> MemorySceneStor
   auto upload = std::make_shared<PartialUpload>();
   upload->total_bytes = total_bytes;
   upload->last_use = now;
-  uploads_[sha256] = upload;
+  uploads_[name] = upload;
   return upload;
 }
 
@@ -117,55 +114,134 @@ absl::Status MemorySceneStore::Reserve(std::uint64_t bytes) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::uint64_t> MemorySceneStore::Complete(const std::string& sha256, PartialUpload& upload) {
+absl::StatusOr<std::uint64_t> MemorySceneStore::Complete(const UploadName& name, PartialUpload& upload) {
+  const auto& [owner, sha256] = name;
   upload.closed = true;
   const std::string actual = upload.hash.Finish();
   const std::lock_guard lock(mutex_);
   const std::uint64_t size = upload.bytes->size();
-  uploads_.erase(sha256);
+  uploads_.erase(name);
   if (actual != sha256) {
     used_bytes_ -= size;
     upload.bytes.reset();
     return BadUpload("HASH_MISMATCH", "the bytes hash to " + actual + ", not to " + sha256 + "; they were thrown away");
   }
-  const std::uint64_t number = next_number_++;
-  numbers_[sha256] = number;
-  scenes_[number] = {sha256, "", std::move(upload.bytes)};
+  used_bytes_ -= size;
+  if (Find(sha256) == nullptr) AddLocked({sha256, "", std::move(upload.bytes)});
+  upload.bytes.reset();
+  AddOwnerLocked(owner, sha256, "");
   return size;
+}
+
+MemorySceneStore::Entry* MemorySceneStore::Find(const std::string& sha256) {
+  const auto number = numbers_.find(sha256);
+  return number == numbers_.end() ? nullptr : &scenes_.at(number->second);
+}
+
+void MemorySceneStore::AddLocked(StoredScene scene) {
+  used_bytes_ += scene.bytes->size();
+  const std::uint64_t number = next_number_++;
+  numbers_[scene.sha256] = number;
+  scenes_[number].scene = std::move(scene);
+}
+
+void MemorySceneStore::AddOwnerLocked(const std::string& owner, const std::string& sha256, const std::string& title) {
+  Entry* entry = Find(sha256);
+  if (entry == nullptr || entry->owners.count(owner) > 0) return;
+  auto& owned = owned_[owner];
+  const std::uint64_t number = owned.empty() ? 1 : owned.rbegin()->first + 1;
+  owned[number] = {sha256, title};
+  entry->owners[owner] = number;
+}
+
+void MemorySceneStore::ForgetOwned(const std::string& owner, std::uint64_t number) {
+  const auto owned = owned_.find(owner);
+  owned->second.erase(number);
+  if (owned->second.empty()) owned_.erase(owned);
+}
+
+void MemorySceneStore::Erase(const std::string& sha256) {
+  const auto number = numbers_.find(sha256);
+  const auto scene = scenes_.find(number->second);
+  for (const auto& [owner, place] : scene->second.owners) ForgetOwned(owner, place);
+  used_bytes_ -= scene->second.scene.bytes->size();
+  scenes_.erase(scene);
+  numbers_.erase(number);
+}
+
+void MemorySceneStore::Add(StoredScene scene) {
+  const std::lock_guard lock(mutex_);
+  if (Find(scene.sha256) == nullptr) AddLocked(std::move(scene));
+}
+
+void MemorySceneStore::AddOwner(const std::string& owner, const std::string& sha256, const std::string& title) {
+  const std::lock_guard lock(mutex_);
+  AddOwnerLocked(owner, sha256, title);
 }
 
 absl::StatusOr<StoredScene> MemorySceneStore::Get(const std::string& sha256) {
   const std::lock_guard lock(mutex_);
-  const auto number = numbers_.find(sha256);
-  if (number == numbers_.end()) return NoSuchScene(sha256);
-  return scenes_.at(number->second);
+  const Entry* entry = Find(sha256);
+  if (entry == nullptr) return NoSuchScene(sha256);
+  return entry->scene;
 }
 
-void MemorySceneStore::SetTitle(const std::string& sha256, const std::string& title) {
+bool MemorySceneStore::Owns(const std::string& owner, const std::string& sha256) {
   const std::lock_guard lock(mutex_);
-  if (const auto number = numbers_.find(sha256); number != numbers_.end()) scenes_.at(number->second).title = title;
+  const Entry* entry = Find(sha256);
+  return entry != nullptr && entry->owners.count(owner) > 0;
 }
 
-ScenePage MemorySceneStore::List(std::optional<std::uint64_t> before, std::size_t limit) {
+bool MemorySceneStore::SetTitle(const std::string& reader, const std::string& sha256, const std::string& title) {
+  const std::lock_guard lock(mutex_);
+  Entry* entry = Find(sha256);
+  if (entry == nullptr) return false;
+  bool news = std::exchange(entry->scene.title, title) != title;
+  if (const auto own = entry->owners.find(reader); own != entry->owners.end()) {
+    news |= std::exchange(owned_.at(reader).at(own->second).title, title) != title;
+  }
+  return news;
+}
+
+ScenePage MemorySceneStore::List(const std::optional<std::string>& owner, std::optional<std::uint64_t> before,
+                                 std::size_t limit) {
   const std::lock_guard lock(mutex_);
   ScenePage page;
-  auto scene = before ? scenes_.lower_bound(*before) : scenes_.end();
-  while (scene != scenes_.begin() && page.scenes.size() < limit) {
-    --scene;
-    page.scenes.push_back(scene->second);
+  const auto list = [&](const auto& all, const auto& scene_of) {
+    auto scene = before ? all.lower_bound(*before) : all.end();
+    while (scene != all.begin() && page.scenes.size() < limit) {
+      --scene;
+      page.scenes.push_back(scene_of(scene->second));
+    }
+    if (scene != all.begin()) page.next_before = scene->first;
+  };
+  if (!owner) {
+    list(scenes_, [](const Entry& entry) { return entry.scene; });
+  } else if (const auto owned = owned_.find(*owner); owned != owned_.end()) {
+    list(owned->second, [&](const Owned& own) {
+      return StoredScene{own.sha256, own.title, Find(own.sha256)->scene.bytes};
+    });
   }
-  if (scene != scenes_.begin()) page.next_before = scene->first;
   return page;
+}
+
+absl::Status MemorySceneStore::Disown(const std::string& owner, const std::string& sha256) {
+  const std::lock_guard lock(mutex_);
+  Entry* entry = Find(sha256);
+  if (entry == nullptr || entry->owners.count(owner) == 0) return NoSuchScene(sha256);
+  if (entry->owners.size() == 1) {
+    Erase(sha256);
+    return absl::OkStatus();
+  }
+  ForgetOwned(owner, entry->owners.at(owner));
+  entry->owners.erase(owner);
+  return absl::OkStatus();
 }
 
 absl::Status MemorySceneStore::Delete(const std::string& sha256) {
   const std::lock_guard lock(mutex_);
-  const auto number = numbers_.find(sha256);
-  if (number == numbers_.end()) return NoSuchScene(sha256);
-  const auto scene = scenes_.find(number->second);
-  used_bytes_ -= scene->second.bytes->size();
-  scenes_.erase(scene);
-  numbers_.erase(number);
+  if (Find(sha256) == nullptr) return NoSuchScene(sha256);
+  Erase(sha256);
   return absl::OkStatus();
 }
 

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 #include "absl/base/thread_annotations.h"
 #include "core/execution/clock.h"
@@ -25,12 +26,19 @@ class MemorySceneStore final : public SceneStore {
   };
   MemorySceneStore(const Limits& limits, const Clock& clock) : limits_(limits), clock_(clock) {}
 
-  absl::StatusOr<std::uint64_t> Upload(const std::string& sha256, std::uint64_t total_bytes, std::uint64_t offset,
-                                       std::string_view data) override;
+  absl::StatusOr<std::uint64_t> Upload(const std::string& owner, const std::string& sha256, std::uint64_t total_bytes,
+                                       std::uint64_t offset, std::string_view data) override;
   absl::StatusOr<StoredScene> Get(const std::string& sha256) override;
-  void SetTitle(const std::string& sha256, const std::string& title) override;
-  ScenePage List(std::optional<std::uint64_t> before, std::size_t limit) override;
+  bool Owns(const std::string& owner, const std::string& sha256) override;
+  bool SetTitle(const std::string& reader, const std::string& sha256, const std::string& title) override;
+  ScenePage List(const std::optional<std::string>& owner, std::optional<std::uint64_t> before,
+                 std::size_t limit) override;
+  absl::Status Disown(const std::string& owner, const std::string& sha256) override;
   absl::Status Delete(const std::string& sha256) override;
+
+  // For a store that outlives the process: a scene of the process before, whatever the limits, and an owner of one.
+  void Add(StoredScene scene);
+  void AddOwner(const std::string& owner, const std::string& sha256, const std::string& title);
 
  private:
   struct PartialUpload {
@@ -42,19 +50,37 @@ class MemorySceneStore final : public SceneStore {
     Clock::Time last_use;
   };
 
-  absl::StatusOr<std::shared_ptr<PartialUpload>> OpenUpload(const std::string& sha256, std::uint64_t total_bytes)
+  using UploadName = std::pair<std::string, std::string>;  // Owner and hash: nobody sees how far another one is.
+  struct Entry {
+    StoredScene scene;
+    std::map<std::string, std::uint64_t> owners;  // And the number of the scene among those of each.
+  };
+  struct Owned {
+    std::string sha256;
+    std::string title;  // Empty until the owner has read the file.
+  };
+
+  absl::StatusOr<std::shared_ptr<PartialUpload>> OpenUpload(const UploadName& name, std::uint64_t total_bytes)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::Status Reserve(std::uint64_t bytes);
-  absl::StatusOr<std::uint64_t> Complete(const std::string& sha256, PartialUpload& upload);
+  absl::StatusOr<std::uint64_t> Complete(const UploadName& name, PartialUpload& upload);
+  Entry* Find(const std::string& sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void AddLocked(StoredScene scene) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void AddOwnerLocked(const std::string& owner, const std::string& sha256, const std::string& title)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void ForgetOwned(const std::string& owner, std::uint64_t number) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void Erase(const std::string& sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const Limits limits_;
   const Clock& clock_;
   std::mutex mutex_;
   std::uint64_t next_number_ ABSL_GUARDED_BY(mutex_) = 1;
   std::uint64_t used_bytes_ ABSL_GUARDED_BY(mutex_) = 0;
-  std::map<std::uint64_t, StoredScene> scenes_ ABSL_GUARDED_BY(mutex_);  // By number: in order of completion.
+  std::map<std::uint64_t, Entry> scenes_ ABSL_GUARDED_BY(mutex_);  // By number: in order of completion.
   std::unordered_map<std::string, std::uint64_t> numbers_ ABSL_GUARDED_BY(mutex_);
-  std::unordered_map<std::string, std::shared_ptr<PartialUpload>> uploads_ ABSL_GUARDED_BY(mutex_);
+  std::unordered_map<std::string, std::map<std::uint64_t, Owned>> owned_
+      ABSL_GUARDED_BY(mutex_);  // The same, by owner.
+  std::map<UploadName, std::shared_ptr<PartialUpload>> uploads_ ABSL_GUARDED_BY(mutex_);
 };
 
 }  // namespace flatlight

@@ -18,7 +18,7 @@ namespace flatlight {
 // A scene file that was uploaded whole.
 struct StoredScene {
   std::string sha256;  // Of the bytes; its name is scenes/{sha256}.
-  std::string title;   // The scene's own name; empty until somebody has read the file.
+  std::string title;   // The scene's own name; empty until somebody (in a list of one owner's: it) has read the file.
   std::shared_ptr<const std::string> bytes;
 };
 
@@ -27,21 +27,36 @@ struct ScenePage {
   std::optional<std::uint64_t> next_before;  // Where the next page begins; absent on the last page.
 };
 
-// Uploaded scene files, by the hash of their bytes. Safe to use from any thread.
+// Uploaded scene files, by the hash of their bytes, and who uploaded them. The bytes are kept once. No answer to one
+// user depends on what others have uploaded, as long as there is room. Safe to use from any thread.
 class SceneStore {
  public:
   virtual ~SceneStore() = default;
 
-  // Appends a piece to an upload and returns how many bytes are there. Empty `data` only asks. `offset` must be that
-  // number (OUT_OF_RANGE says what it is). The last piece completes the scene; if the bytes do not have the hash, they
-  // are thrown away (INVALID_ARGUMENT). A scene that is there already stays: all of its bytes are there.
-  virtual absl::StatusOr<std::uint64_t> Upload(const std::string& sha256, std::uint64_t total_bytes,
-                                               std::uint64_t offset, std::string_view data) = 0;
+  // Appends a piece to an upload of `owner` and returns how many of its bytes are there. Empty `data` only asks.
+  // `offset` must be that number (OUT_OF_RANGE says what it is). The last piece completes the scene; if the bytes do
+  // not have the hash, they are thrown away (INVALID_ARGUMENT). Of a scene that it has uploaded already all bytes are
+  // there.
+  virtual absl::StatusOr<std::uint64_t> Upload(const std::string& owner, const std::string& sha256,
+                                               std::uint64_t total_bytes, std::uint64_t offset,
+                                               std::string_view data) = 0;
+  // Whoever has it. NOT_FOUND.
   virtual absl::StatusOr<StoredScene> Get(const std::string& sha256) = 0;
-  virtual void SetTitle(const std::string& sha256, const std::string& title) = 0;
-  virtual ScenePage List(std::optional<std::uint64_t> before, std::size_t limit) = 0;
+  virtual bool Owns(const std::string& owner, const std::string& sha256) = 0;
+  // `reader` has read the file. Whether that is news.
+  virtual bool SetTitle(const std::string& reader, const std::string& sha256, const std::string& title) = 0;
+  // At most `limit` scenes from the newest one, or from the newest one before `before`: those of `owner`, or all.
+  // Positions of one owner's scenes are its own: they tell nothing of others.
+  virtual ScenePage List(const std::optional<std::string>& owner, std::optional<std::uint64_t> before,
+                         std::size_t limit) = 0;
+  // Takes it from one owner; it goes with the last one. NOT_FOUND if the owner does not have it.
+  virtual absl::Status Disown(const std::string& owner, const std::string& sha256) = 0;
+  // Takes it from all. NOT_FOUND.
   virtual absl::Status Delete(const std::string& sha256) = 0;
 };
+
+// NOT_FOUND.
+absl::Status NoSuchScene(const std::string& sha256);
 
 }  // namespace flatlight
 

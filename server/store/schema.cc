@@ -118,6 +118,18 @@ CREATE TRIGGER rooms_drop_rest AFTER DELETE ON rooms BEGIN
 END;
 )sql";
 
+// Scenes that were uploaded before this have no owner: staff reads them, and who uploads them again.
+constexpr char kSceneOwners[] = R"sql(
+CREATE TABLE scene_owners(
+  number INTEGER PRIMARY KEY AUTOINCREMENT,  -- In the order of completion.
+  owner TEXT NOT NULL,
+  sha256 TEXT NOT NULL REFERENCES scenes(sha256) DEFERRABLE INITIALLY DEFERRED,
+  title TEXT NOT NULL,  -- Empty until the owner has read the file.
+  UNIQUE(owner, sha256)
+);
+CREATE INDEX scene_owners_by_scene ON scene_owners(sha256);
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -128,7 +140,7 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs, kScenes, kUsers, kPauses, kGrants, kRooms};
+  static const std::vector<std::string> kMigrations = {kJobs, kScenes, kUsers, kPauses, kGrants, kRooms, kSceneOwners};
   return kMigrations;
 }
 

@@ -3,7 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::ReasonOf;
+using ::testing::SizeIs;
 using testing::TestContext;
 
 TEST(PolicyTest, EveryRpcHasARowAndEveryRowAnRpc) {
@@ -127,46 +129,151 @@ TEST_F(AccessTest, RecordsOfAnothersJobAreNotKnown) {
               HasSubstr("has made no records"));
 }
 
-TEST_F(AccessTest, UploadsAreListedToStaffAndDeletedByInstructors) {
-  Start();
-  AddClass();
-  std::string json;
-  ASSERT_TRUE(google::protobuf::util::MessageToJsonString(testing::FloorAndLampProto({4}), &json).ok());
-  v1::UploadSceneRequest upload;
-  upload.set_sha256(Sha256Of(json));
-  upload.set_total_bytes(json.size());
-  upload.set_data(json);
-  TestContext uploading;
-  Identify("ada", uploading);
-  v1::UploadSceneResponse uploaded;
-  ASSERT_TRUE(server_->scenes().UploadScene(&uploading, upload, &uploaded).ok());
-  const std::string name = "scenes/" + upload.sha256();
-
-  const auto is_listed = [&](const std::string& user) {
+class SceneAccessTest : public AccessTest {
+ protected:
+  void SetUp() override {
+    Start();
+    AddClass();
+    v1::Scene scene = testing::FloorAndLampProto({4});
+    scene.set_name("a floor and a lamp");
+    ASSERT_TRUE(google::protobuf::util::MessageToJsonString(scene, &json_).ok());
+    name_ = "scenes/" + Sha256Of(json_);
+  }
+  template <class Request, class Response>
+  grpc::Status CallScenes(const std::string& user, const Request& request, Response& response,
+                          grpc::Status (v1::SceneService::Stub::*rpc)(grpc::ClientContext*, const Request&,
+                                                                      Response*)) {
     TestContext context;
     Identify(user, context);
+    return (server_->scenes().*rpc)(&context, request, &response);
+  }
+  // Returns how many bytes are there.
+  std::uint64_t UploadPiece(const std::string& user, std::size_t offset, std::size_t size) {
+    v1::UploadSceneRequest request;
+    request.set_sha256(Sha256Of(json_));
+    request.set_total_bytes(json_.size());
+    request.set_offset(offset);
+    request.set_data(json_.substr(offset, size));
+    v1::UploadSceneResponse response;
+    const auto status = CallScenes(user, request, response, &v1::SceneService::Stub::UploadScene);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return response.received_bytes();
+  }
+  void Upload(const std::string& user) { ASSERT_EQ(UploadPiece(user, 0, json_.size()), json_.size()); }
+  // Uploads that are listed, with their titles.
+  std::map<std::string, std::string> Uploads(const std::string& user) {
     v1::ListScenesRequest request;
     request.set_page_size(1000);
     v1::ListScenesResponse response;
-    EXPECT_TRUE(server_->scenes().ListScenes(&context, request, &response).ok());
+    EXPECT_TRUE(CallScenes(user, request, response, &v1::SceneService::Stub::ListScenes).ok());
     EXPECT_GT(response.scenes_size(), 10) << "the gallery is everybody's";
-    return std::any_of(response.scenes().begin(), response.scenes().end(),
-                       [&](const v1::SceneInfo& scene) { return scene.name() == name; });
-  };
-  EXPECT_FALSE(is_listed("ada"));
-  EXPECT_FALSE(is_listed("bob"));
-  EXPECT_TRUE(is_listed("gus"));
-  const auto remove = [&](const std::string& user) {
-    TestContext context;
-    Identify(user, context);
+    std::map<std::string, std::string> uploads;
+    for (const v1::SceneInfo& scene : response.scenes()) {
+      if (!scene.gallery()) uploads[scene.name()] = scene.title();
+    }
+    return uploads;
+  }
+  grpc::Status Read(const std::string& user, const std::string& name) {
+    v1::GetSceneRequest request;
+    request.set_name(name);
+    v1::GetSceneResponse response;
+    return CallScenes(user, request, response, &v1::SceneService::Stub::GetScene);
+  }
+  grpc::Status Validate(const std::string& user, const std::string& name) {
+    v1::ValidateSceneRequest request;
+    request.mutable_scene()->set_name(name);
+    v1::ValidateSceneResponse response;
+    return CallScenes(user, request, response, &v1::SceneService::Stub::ValidateScene);
+  }
+  grpc::Status Remove(const std::string& user, const std::string& name) {
     v1::DeleteSceneRequest request;
     request.set_name(name);
     v1::DeleteSceneResponse response;
-    return server_->scenes().DeleteScene(&context, request, &response);
-  };
-  EXPECT_EQ(ReasonOf(remove("bob")), "ROLE_TOO_LOW");
-  EXPECT_EQ(ReasonOf(remove("gus")), "ROLE_TOO_LOW");
-  EXPECT_TRUE(remove("ina").ok());
+    return CallScenes(user, request, response, &v1::SceneService::Stub::DeleteScene);
+  }
+  grpc::Status Render(const std::string& user, const std::string& name) {
+    v1::CreateJobRequest request;
+    request.mutable_scene()->set_name(name);
+    request.mutable_settings()->set_samples(16);
+    v1::Job job;
+    return Call(user, request, job, &v1::RenderService::Stub::CreateJob);
+  }
+  grpc::Status Explain(const std::string& user, const std::string& name) {
+    v1::ExplainJobRequest request;
+    request.mutable_scene()->set_name(name);
+    v1::ExplainJobResponse response;
+    return Call(user, request, response, &v1::RenderService::Stub::ExplainJob);
+  }
+
+  std::string json_;
+  std::string name_;
+};
+
+TEST_F(SceneAccessTest, AnUploadIsItsOwnersAndTheStaffs) {
+  Upload("ada");
+  const std::string none = "scenes/" + Sha256Of("nothing");
+  for (const auto call : {&SceneAccessTest::Read, &SceneAccessTest::Validate, &SceneAccessTest::Render,
+                          &SceneAccessTest::Explain, &SceneAccessTest::Remove}) {
+    const grpc::Status forbidden = (this->*call)("bob", name_);
+    const grpc::Status unknown = (this->*call)("bob", none);
+    EXPECT_EQ(forbidden.error_code(), StatusCode::NOT_FOUND) << "who knows the hash has nothing yet";
+    EXPECT_EQ(ReasonOf(forbidden), ReasonOf(unknown));
+    EXPECT_EQ(forbidden.error_message(), name_ + " does not exist");
+    EXPECT_EQ(unknown.error_message(), none + " does not exist");
+  }
+  EXPECT_THAT(Uploads("bob"), IsEmpty());
+  for (const char* user : {"ada", "gus", "ina"}) {
+    EXPECT_THAT(Uploads(user), SizeIs(1)) << user;
+    EXPECT_TRUE(Read(user, name_).ok()) << user;
+    EXPECT_TRUE(Validate(user, name_).ok()) << user;
+    EXPECT_TRUE(Explain(user, name_).ok()) << user;
+    EXPECT_TRUE(Render(user, name_).ok()) << user;
+  }
+  EXPECT_EQ(ReasonOf(Remove("gus", name_)), "NOT_YOUR_SCENE");
+  EXPECT_TRUE(Remove("ada", name_).ok());
+  EXPECT_EQ(Read("ina", name_).error_code(), StatusCode::NOT_FOUND);
+}
+
+TEST_F(SceneAccessTest, AnUploadTellsNothingOfWhatOthersHave) {
+  Upload("ada");
+  ASSERT_TRUE(Validate("ada", name_).ok());
+  EXPECT_EQ(Uploads("ada").at(name_), "a floor and a lamp");
+  EXPECT_EQ(UploadPiece("bob", 0, 0), 0u) << "a call without data asks";
+  EXPECT_EQ(UploadPiece("bob", 0, 10), 10u);
+  EXPECT_EQ(UploadPiece("gus", 0, 0), 0u) << "nor how far another one is";
+  EXPECT_THAT(Uploads("bob"), IsEmpty());
+  EXPECT_EQ(UploadPiece("bob", 10, json_.size()), json_.size());
+  EXPECT_EQ(Uploads("bob").at(name_), "") << "a title would tell that somebody has read it";
+  EXPECT_EQ(UploadPiece("bob", 0, 0), json_.size()) << "but one's own is known";
+  EXPECT_EQ(Uploads("gus").at(name_), "a floor and a lamp");
+}
+
+TEST_F(SceneAccessTest, OwnersAreRememberedAndTheLastOneTakesTheScene) {
+  Upload("ada");
+  Upload("bob");
+  server_.reset();
+  Start();
+  EXPECT_TRUE(Read("bob", name_).ok());
+  ASSERT_TRUE(Remove("ada", name_).ok());
+  EXPECT_EQ(Read("ada", name_).error_code(), StatusCode::NOT_FOUND);
+  EXPECT_EQ(Remove("ada", name_).error_code(), StatusCode::NOT_FOUND);
+  server_.reset();
+  Start();
+  EXPECT_THAT(Uploads("ada"), IsEmpty());
+  EXPECT_TRUE(Read("bob", name_).ok());
+  ASSERT_TRUE(Remove("bob", name_).ok());
+  EXPECT_THAT(Uploads("gus"), IsEmpty());
+  EXPECT_EQ(Read("gus", name_).error_code(), StatusCode::NOT_FOUND);
+}
+
+TEST_F(SceneAccessTest, AnInstructorTakesASceneFromAll) {
+  Upload("ada");
+  Upload("bob");
+  ASSERT_TRUE(Remove("ina", name_).ok());
+  server_.reset();
+  Start();
+  for (const char* user : {"ada", "bob", "gus"}) EXPECT_THAT(Uploads(user), IsEmpty()) << user;
+  EXPECT_EQ(UploadPiece("ada", 0, 0), 0u);
 }
 
 }  // namespace

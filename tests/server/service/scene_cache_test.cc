@@ -40,14 +40,14 @@ TEST(SceneCache, ASceneLargerThanAllDrivesNoneOut) {
 class LoadSceneTest : public ::testing::Test {
  protected:
   LoadSceneTest() {
-    EXPECT_TRUE(store_.Upload(hash_, text_.size(), 0, text_).ok());
+    EXPECT_TRUE(store_.Upload(caller_.name, hash_, text_.size(), 0, text_).ok());
     source_.set_name("scenes/" + hash_);
   }
   // Lets `phases` phases begin.
   absl::StatusOr<std::shared_ptr<const Scene>> Load(int phases) {
     Diagnostics diagnostics;
     auto scene = LoadScene(
-        source_, {store_, cache_, Limits()},
+        source_, {caller_, store_, cache_, Limits()},
         [&] { return --phases < 0 ? MakeError(absl::StatusCode::kCancelled, "STOPPED", "") : absl::OkStatus(); },
         diagnostics);
     EXPECT_TRUE(diagnostics.empty());
@@ -59,6 +59,7 @@ class LoadSceneTest : public ::testing::Test {
       "curves":[{"name":"floor","segment":{"a":{"x":0,"y":0},"b":{"x":1,"y":0}},"material":"grey"}]},
       "probes":[{"name":"floor","curve":"floor","count":3}]})";
   const std::string hash_ = Sha256Of(text_);
+  const Caller caller_{"ada", Role::kStudent};
   testing::FakeClock clock_;
   MemorySceneStore store_{{}, clock_};
   SceneCache cache_{1u << 20};

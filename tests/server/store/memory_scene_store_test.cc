@@ -17,11 +17,13 @@ using testing::IsOk;
 using testing::StatusIs;
 using enum absl::StatusCode;
 
+constexpr char kOwner[] = "ada";
+
 class MemorySceneStoreTest : public ::testing::Test {
  protected:
   // Uploads all of `text` at once.
   absl::StatusOr<std::uint64_t> UploadAll(const std::string& text) {
-    return store_.Upload(Sha256Of(text), text.size(), 0, text);
+    return store_.Upload(kOwner, Sha256Of(text), text.size(), 0, text);
   }
 
   testing::FakeClock clock_;
@@ -36,34 +38,36 @@ TEST(Sha256, AgreesWithThePublishedExample) {
 }
 
 TEST_F(MemorySceneStoreTest, TakesAFileInPieces) {
-  EXPECT_EQ(*store_.Upload(hash_, text_.size(), 0, ""), 0u);
-  EXPECT_EQ(*store_.Upload(hash_, text_.size(), 0, text_.substr(0, 5)), 5u);
-  EXPECT_EQ(*store_.Upload(hash_, text_.size(), 0, ""), 5u) << "a call without data asks";
+  EXPECT_EQ(*store_.Upload(kOwner, hash_, text_.size(), 0, ""), 0u);
+  EXPECT_EQ(*store_.Upload(kOwner, hash_, text_.size(), 0, text_.substr(0, 5)), 5u);
+  EXPECT_EQ(*store_.Upload(kOwner, hash_, text_.size(), 0, ""), 5u) << "a call without data asks";
   EXPECT_THAT(store_.Get(hash_), StatusIs(kNotFound, _)) << "not complete";
-  EXPECT_EQ(*store_.Upload(hash_, text_.size(), 5, text_.substr(5)), text_.size());
+  EXPECT_EQ(*store_.Upload(kOwner, hash_, text_.size(), 5, text_.substr(5)), text_.size());
   EXPECT_EQ(*store_.Get(hash_)->bytes, text_);
-  EXPECT_EQ(*store_.Upload(hash_, text_.size(), 0, text_), text_.size()) << "all is there already";
+  EXPECT_EQ(*store_.Upload(kOwner, hash_, text_.size(), 0, text_), text_.size()) << "all is there already";
 }
 
 TEST_F(MemorySceneStoreTest, ThePlaceOfAPieceMustBeRight) {
-  ASSERT_THAT(store_.Upload(hash_, text_.size(), 0, text_.substr(0, 5)), IsOk());
-  EXPECT_THAT(store_.Upload(hash_, text_.size(), 0, text_.substr(0, 5)),
+  ASSERT_THAT(store_.Upload(kOwner, hash_, text_.size(), 0, text_.substr(0, 5)), IsOk());
+  EXPECT_THAT(store_.Upload(kOwner, hash_, text_.size(), 0, text_.substr(0, 5)),
               StatusIs(kOutOfRange, HasSubstr("5 bytes are there")));
-  EXPECT_THAT(store_.Upload(hash_, text_.size(), 5, text_), StatusIs(kInvalidArgument, HasSubstr("missing")));
-  EXPECT_THAT(store_.Upload(hash_, text_.size() + 1, 5, "x"), StatusIs(kInvalidArgument, HasSubstr("total_bytes")));
+  EXPECT_THAT(store_.Upload(kOwner, hash_, text_.size(), 5, text_), StatusIs(kInvalidArgument, HasSubstr("missing")));
+  EXPECT_THAT(store_.Upload(kOwner, hash_, text_.size() + 1, 5, "x"),
+              StatusIs(kInvalidArgument, HasSubstr("total_bytes")));
 }
 
 TEST_F(MemorySceneStoreTest, OtherBytesThanTheHashSaysAreThrownAway) {
   const std::string other(text_.size(), 'x');
-  EXPECT_THAT(store_.Upload(hash_, text_.size(), 0, other), StatusIs(kInvalidArgument, HasSubstr(Sha256Of(other))));
+  EXPECT_THAT(store_.Upload(kOwner, hash_, text_.size(), 0, other),
+              StatusIs(kInvalidArgument, HasSubstr(Sha256Of(other))));
   EXPECT_THAT(store_.Get(hash_), StatusIs(kNotFound, _));
   EXPECT_THAT(UploadAll(text_), IsOk()) << "and the right ones are taken";
 }
 
 TEST_F(MemorySceneStoreTest, RefusesBadHashesAndSizes) {
-  EXPECT_THAT(store_.Upload("abc", 3, 0, "abc"), StatusIs(kInvalidArgument, HasSubstr("sha256")));
-  EXPECT_THAT(store_.Upload(hash_, 0, 0, ""), StatusIs(kInvalidArgument, HasSubstr("total_bytes is 0")));
-  EXPECT_THAT(store_.Upload(hash_, 101, 0, "x"), StatusIs(kInvalidArgument, HasSubstr("100")));
+  EXPECT_THAT(store_.Upload(kOwner, "abc", 3, 0, "abc"), StatusIs(kInvalidArgument, HasSubstr("sha256")));
+  EXPECT_THAT(store_.Upload(kOwner, hash_, 0, 0, ""), StatusIs(kInvalidArgument, HasSubstr("total_bytes is 0")));
+  EXPECT_THAT(store_.Upload(kOwner, hash_, 101, 0, "x"), StatusIs(kInvalidArgument, HasSubstr("100")));
 }
 
 TEST_F(MemorySceneStoreTest, AllScenesTogetherAreLimited) {
@@ -76,28 +80,64 @@ TEST_F(MemorySceneStoreTest, AllScenesTogetherAreLimited) {
 }
 
 TEST_F(MemorySceneStoreTest, AnIdleUploadGivesWay) {
-  ASSERT_THAT(store_.Upload(Sha256Of("first"), 5, 0, "fi"), IsOk());
-  ASSERT_THAT(store_.Upload(Sha256Of("second"), 6, 0, "se"), IsOk());
-  EXPECT_THAT(store_.Upload(Sha256Of("third"), 5, 0, "th"), StatusIs(kResourceExhausted, HasSubstr("2 uploads")));
+  ASSERT_THAT(store_.Upload(kOwner, Sha256Of("first"), 5, 0, "fi"), IsOk());
+  ASSERT_THAT(store_.Upload(kOwner, Sha256Of("second"), 6, 0, "se"), IsOk());
+  EXPECT_THAT(store_.Upload(kOwner, Sha256Of("third"), 5, 0, "th"),
+              StatusIs(kResourceExhausted, HasSubstr("2 uploads")));
   clock_.Advance(std::chrono::seconds(30));
-  ASSERT_THAT(store_.Upload(Sha256Of("second"), 6, 2, "co"), IsOk());
+  ASSERT_THAT(store_.Upload(kOwner, Sha256Of("second"), 6, 2, "co"), IsOk());
   clock_.Advance(std::chrono::seconds(31));
-  EXPECT_THAT(store_.Upload(Sha256Of("third"), 5, 0, "th"), IsOk());
-  EXPECT_EQ(*store_.Upload(Sha256Of("first"), 5, 0, ""), 0u);
-  EXPECT_EQ(*store_.Upload(Sha256Of("second"), 6, 0, ""), 4u);
+  EXPECT_THAT(store_.Upload(kOwner, Sha256Of("third"), 5, 0, "th"), IsOk());
+  EXPECT_EQ(*store_.Upload(kOwner, Sha256Of("first"), 5, 0, ""), 0u);
+  EXPECT_EQ(*store_.Upload(kOwner, Sha256Of("second"), 6, 0, ""), 4u);
 }
 
 TEST_F(MemorySceneStoreTest, ListsNewestFirst) {
   for (const char* text : {"a", "b", "c"}) ASSERT_THAT(UploadAll(text), IsOk());
-  store_.SetTitle(Sha256Of("c"), "the third");
-  const ScenePage first = store_.List(std::nullopt, 2);
+  store_.SetTitle(kOwner, Sha256Of("c"), "the third");
+  const ScenePage first = store_.List(std::nullopt, std::nullopt, 2);
   ASSERT_EQ(first.scenes.size(), 2u);
   EXPECT_EQ(first.scenes[0].title, "the third");
-  const ScenePage second = store_.List(first.next_before, 2);
+  const ScenePage second = store_.List(std::nullopt, first.next_before, 2);
   ASSERT_EQ(second.scenes.size(), 1u);
   EXPECT_EQ(*second.scenes[0].bytes, "a");
   EXPECT_FALSE(second.next_before);
   EXPECT_THAT(UploadAll("d"), StatusIs(kResourceExhausted, HasSubstr("3 scenes")));
+}
+
+TEST_F(MemorySceneStoreTest, BytesOfSeveralOwnersAreKeptOnceUntilTheLastGoes) {
+  const std::string large(90, 'a');  // Two of them are more than fits in.
+  const std::string hash = Sha256Of(large);
+  ASSERT_THAT(UploadAll(large), IsOk());
+  EXPECT_EQ(*store_.Upload("bob", hash, 90, 0, large.substr(0, 50)), 50u) << "as if nobody had it";
+  EXPECT_EQ(*store_.Upload("bob", hash, 90, 50, large.substr(50)), 90u);
+  ASSERT_THAT(UploadAll(std::string(50, 'b')), IsOk());
+  ASSERT_THAT(store_.Disown(kOwner, hash), IsOk());
+  EXPECT_FALSE(store_.Owns(kOwner, hash));
+  EXPECT_THAT(store_.Get(hash), IsOk());
+  EXPECT_THAT(store_.Disown(kOwner, hash), StatusIs(kNotFound, _));
+  ASSERT_THAT(store_.Disown("bob", hash), IsOk());
+  EXPECT_THAT(store_.Get(hash), StatusIs(kNotFound, _));
+  EXPECT_THAT(UploadAll(std::string(90, 'c')), IsOk()) << "there is room again";
+}
+
+TEST_F(MemorySceneStoreTest, PositionsOfOnesOwnScenesTellNothingOfOthers) {
+  for (const char* text : {"a", "b", "c"}) {
+    ASSERT_THAT(store_.Upload("bob", Sha256Of(text), 1, 0, text), IsOk());
+  }
+  ASSERT_THAT(store_.Upload(kOwner, Sha256Of("d"), 1, 0, "d"), StatusIs(kResourceExhausted, _));
+  ASSERT_THAT(store_.Disown("bob", Sha256Of("c")), IsOk());
+  ASSERT_THAT(store_.Upload(kOwner, Sha256Of("d"), 1, 0, "d"), IsOk());
+  ASSERT_THAT(store_.Delete(Sha256Of("b")), IsOk());
+  ASSERT_THAT(store_.Upload(kOwner, Sha256Of("a"), 1, 0, "a"), IsOk());
+  const ScenePage first = store_.List(kOwner, std::nullopt, 1);
+  ASSERT_EQ(first.scenes.size(), 1u);
+  EXPECT_EQ(*first.scenes[0].bytes, "a") << "its newest, whoever had it before";
+  EXPECT_EQ(first.next_before, 2u);
+  const ScenePage second = store_.List(kOwner, first.next_before, 1);
+  ASSERT_EQ(second.scenes.size(), 1u);
+  EXPECT_EQ(*second.scenes[0].bytes, "d");
+  EXPECT_FALSE(second.next_before);
 }
 
 }  // namespace
