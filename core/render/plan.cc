@@ -238,7 +238,7 @@ std::string Summary(const Scene& scene, const Plan& plan) {
     const bool cached = plan.settings.method == Method::kIrradianceCaching;
     text += cached ? HowRecordsTell(plan.settings, plan.Takes(skip::kBounces)) : HowPhotonsTell(scene, plan.settings);
     const bool closed_form = !cached && *plan.settings.final_gather;
-    // Measured in the gallery with 256 to 65536 points.
+    // Caching takes 1.9 to 55 times as long as exact (penumbra, city, blocker, unit-light; 256 and 65536 points).
     if (!closed_form && DirectLightOnly(scene, plan.settings) && !plan.Takes(skip::kEmission))
       text += "; the method exact would be done sooner, with no error but rounding";
     return text + ".";
