@@ -130,7 +130,7 @@ TEST_F(AccessTest, RecordsOfAnothersJobAreNotKnown) {
 }
 
 class SceneAccessTest : public AccessTest {
- protected:
+ public:
   void SetUp() override {
     Start();
     AddClass();
