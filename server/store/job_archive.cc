@@ -275,6 +275,8 @@ absl::StatusOr<JobArchive::Page> JobArchive::ListShared(const std::vector<Grante
 }
 
 absl::Status JobArchive::Share(const JobId& id, const Grant& grant) {
+  const std::lock_guard lock(grants_mutex_);
+  grants_.erase(id);
   return storage_.Write([&](Writing& writing) -> absl::Status {
     if (const auto number = NumberOf(writing.database(), id); !number.ok()) return number.status();
     return InsertGrant(writing.database(), id.Name(), grant);
@@ -282,6 +284,8 @@ absl::Status JobArchive::Share(const JobId& id, const Grant& grant) {
 }
 
 absl::Status JobArchive::Unshare(const JobId& id, const Grantee& grantee) {
+  const std::lock_guard lock(grants_mutex_);
+  grants_.erase(id);
   return storage_.Write([&](Writing& writing) -> absl::Status {
     if (const auto number = NumberOf(writing.database(), id); !number.ok()) return number.status();
     return DeleteGrant(writing.database(), id.Name(), grantee);
@@ -289,12 +293,16 @@ absl::Status JobArchive::Unshare(const JobId& id, const Grantee& grantee) {
 }
 
 absl::StatusOr<std::vector<Grant>> JobArchive::GrantsOf(const JobId& id) {
+  const std::lock_guard lock(grants_mutex_);
+  if (const auto known = grants_.find(id); known != grants_.end()) return known->second;
   absl::StatusOr<std::vector<Grant>> grants;
-  const absl::Status read = storage_.Read([&](Database& database) {
+  absl::Status read = storage_.Read([&](Database& database) {
     grants = ReadGrants(database, id.Name());
     return grants.status();
   });
-  return read.ok() ? grants : absl::StatusOr<std::vector<Grant>>(read);
+  if (!read.ok()) return read;
+  if (grants_.size() >= kMostGranted) grants_.clear();
+  return grants_[id] = *std::move(grants);
 }
 
 absl::StatusOr<std::vector<ArchivedJob>> JobArchive::Unfinished() {

@@ -5,10 +5,13 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
+#include "absl/base/thread_annotations.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "server/store/job_id.h"
@@ -72,8 +75,13 @@ class JobArchive {
   absl::StatusOr<std::optional<std::string>> FetchCheckpoint(const JobId& id);
 
  private:
+  // Of jobs whose grants are remembered, as every call asks for them; then all are forgotten.
+  static constexpr std::size_t kMostGranted = 10'000;
+
   Storage& storage_;
   const std::string build_;
+  std::mutex grants_mutex_;
+  std::unordered_map<JobId, std::vector<Grant>> grants_ ABSL_GUARDED_BY(grants_mutex_);
 };
 
 }  // namespace flatlight
