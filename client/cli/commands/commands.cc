@@ -13,6 +13,7 @@ CommandResult RunCommand(const CommandLine& line, Interruption& interruption) {
       {"watch", Watch},
       {"jobs", Jobs},
       {"top", Top},
+      {"health", Health},
       {"show", Show},
       {"fetch", Fetch},
       {"cancel", Cancel},

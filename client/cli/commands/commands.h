@@ -49,6 +49,9 @@ CommandResult DeleteRoom(const CommandLine& line, Interruption& interruption);
 // top_command.cc
 CommandResult Top(const CommandLine& line, Interruption& interruption);
 
+// health_command.cc
+CommandResult Health(const CommandLine& line, Interruption& interruption);
+
 // scene_commands.cc
 CommandResult Scenes(const CommandLine& line, Interruption& interruption);
 CommandResult Explain(const CommandLine& line, Interruption& interruption);

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/connection/connection.h"
 
-#include <grpcpp/create_channel.h>
-#include <grpcpp/security/credentials.h>
-
 #include <utility>
 
+#include "client/cli/connection/channel.h"
 #include "client/cli/status/exit_code.h"
 #include "client/cli/status/rpc_error.h"
 
@@ -13,20 +11,6 @@ namespace flatlight {
 namespace {
 
 constexpr std::chrono::seconds kDeadline{60};  // Of a unary call; each answers at once or after a short wait.
-
-std::shared_ptr<grpc::Channel> NewChannel(const ServerAddress& address, const Tls& tls) {
-  grpc::ChannelArguments arguments;
-  arguments.SetMaxReceiveMessageSize(-1);  // The server bounds what it sends.
-  arguments.SetUserAgentPrefix("flatlight");
-  // The defaults wait a second before the second try, long for a server that is just starting.
-  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 20);
-  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1000);
-  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1000);
-  if (address.local) arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
-  if (!tls.on) return grpc::CreateCustomChannel(address.target, grpc::InsecureChannelCredentials(), arguments);
-  if (!tls.arguments.name.empty()) arguments.SetSslTargetNameOverride(tls.arguments.name);
-  return grpc::CreateCustomChannel(address.target, grpc::SslCredentials({tls.ca, tls.key, tls.cert}), arguments);
-}
 
 }  // namespace
 

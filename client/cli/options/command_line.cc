@@ -239,6 +239,9 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   CLI::App& top = AddCommand(app, "top", "show what a server does: jobs, users, rates", kTopHelp);
   top.add_flag("--once", raw.line.once, "show it once, in plain text");
   AddJson(top, raw, "the activity");
+  CLI::App& health = AddCommand(app, "health", "ask a server whether it serves; needs no token", kHealthHelp);
+  AddQuiet(health, raw);
+  AddServer(health, raw);
   CLI::App& show = AddCommand(app, "show", "show a job", kJobHelp);
   AddJob(show, raw);
   AddJson(show, raw, "the job");

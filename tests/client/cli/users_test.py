@@ -38,6 +38,7 @@ class UsersTest(CliCase):
                              "bob,student,,active\ngus,grader,,active\nina,instructor,staff,active\n")
 
             self.assertIn("Bearer TOKEN", self.run_cli("jobs", status=4).stderr)
+            self.assertEqual(self.run_cli("health").stdout, f"{daemon.address} SERVING\n")
             job = self.as_user(tokens["ada"], "submit", "gallery:cornell", "--samples", "1000000000",
                                "--quiet").stdout.strip()
             self.assertIn(job[5:], self.as_user(tokens["ada"], "jobs").stdout)
@@ -57,6 +58,7 @@ class UsersTest(CliCase):
             self.as_user(tokens["ina"], "cancel", job)
             again = self.tokens("ada")["ada"]
             self.assertIn(job[5:], self.as_user(again, "jobs").stdout)
+        self.assertIn("cannot reach the server", self.run_cli("health", status=3).stderr)
         for name in os.listdir(self.path("data")):
             if os.path.isfile(self.path("data/" + name)):
                 with open(self.path("data/" + name), "rb") as file:
