@@ -10,8 +10,9 @@
 namespace flatlight {
 
 // What connections may cost, before any call is looked at: bytes of messages and of their metadata, streams of one
-// connection, memory of them all. A caller that is quiet for `keepalive` is asked whether it is there; one that does
-// not answer for as long again has gone, and with it its calls (also where its machine vanished without a word).
+// connection, memory of them all. A caller whose calls have been quiet for `keepalive` is asked whether it is there;
+// one that does not answer for five times as long has gone, and with it its calls (also where its machine vanished
+// without a word).
 void SetConnectionLimits(grpc::ServerBuilder& builder, const Limits& limits, std::chrono::milliseconds keepalive);
 
 }  // namespace flatlight

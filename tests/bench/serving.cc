@@ -78,7 +78,8 @@ v1::WatchJobRequest WatchOf(const std::string& job) {
 v1::GetActivityResponse Activity(BenchDaemon& daemon) {
   CallContext context;
   v1::GetActivityResponse activity;
-  if (!daemon.server().GetActivity(&context, {}, &activity).ok()) Die("GetActivity failed");
+  const grpc::Status status = daemon.server().GetActivity(&context, {}, &activity);
+  if (!status.ok()) Die("GetActivity: " + status.error_message());
   return activity;
 }
 

@@ -101,7 +101,8 @@ TEST(ChainedLightTest, GradientsOfMirroredLight) {
 
 // In a closed room all light is absorbed: over all walls the integral of (1 - reflectance) E is the power of the
 // lights, caustics and what they light included. Some caustics have an edge where light grows like 1/sqrt(x), so sums
-// over points at equal distances h fall short by about sqrt(h): 3 % with 100 points a wall, 0.3 % with 6000.
+// over points at equal distances h are off by the order of sqrt(h), to the side on which the edges lie between points:
+// with these points they fall short, by 3 % with 100 a wall and 0.3 % with 6000.
 void ExpectEnergyIsKept(double rho, std::uint32_t points_per_wall, std::uint32_t samples, double shortfall) {
   SceneMaker maker = SquareRoom(Diffuse(rho), points_per_wall);
   maker.Arc("ball", {{0.3, -0.2}, 0.35, 0, -kFullTurn}, {.material = DielectricDescription{1.5}});

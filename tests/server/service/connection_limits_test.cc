@@ -34,7 +34,12 @@ TEST(ConnectionLimits, LongMetadataAreRefused) {
   }
 }
 
-// A peer that has greeted, as HTTP/2 wants it, and then vanishes.
+// As HPACK writes a header that is in no table.
+std::string Header(const std::string& name, const std::string& value) {
+  return std::string(1, '\0') + static_cast<char>(name.size()) + name + static_cast<char>(value.size()) + value;
+}
+
+// A peer that has greeted and begun a call, as HTTP/2 wants it, and then vanishes.
 TEST(ConnectionLimits, WhoNoLongerAnswersHasGone) {
   const testing::TemporaryFolder folder;
   ServerOptions options;
@@ -47,7 +52,12 @@ TEST(ConnectionLimits, WhoNoLongerAnswersHasGone) {
   const std::string path = folder.path() + "/socket";
   std::memcpy(address.sun_path, path.c_str(), path.size());
   ASSERT_EQ(connect(peer, reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
-  const std::string greeting("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n\0\0\0\x04\0\0\0\0\0", 33);
+  const std::string headers = Header(":method", "POST") + Header(":scheme", "http") +
+                              Header(":authority", "localhost") +
+                              Header(":path", "/flatlight.v1.RenderService/WatchJob") +
+                              Header("content-type", "application/grpc") + Header("te", "trailers");
+  const std::string greeting = std::string("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n\0\0\0\x04\0\0\0\0\0", 33) +
+                               std::string({'\0', '\0', static_cast<char>(headers.size()), 1, 4, 0, 0, 0, 1}) + headers;
   ASSERT_EQ(write(peer, greeting.data(), greeting.size()), static_cast<ssize_t>(greeting.size()));
   bool closed = false;
   std::array<char, 4096> received;
