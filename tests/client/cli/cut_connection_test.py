@@ -25,6 +25,12 @@ class CutConnectionTest(CliCase):
         self.addCleanup(watch.kill)
         return watch
 
+    # A command whose first call already fails says so, and ends.
+    def await_watch(self, watch):
+        while json.loads(self.run_cli("top", "--json").stdout).get("watches", 0) == 0:
+            self.assertIsNone(watch.poll(), "the watch has not begun")
+            time.sleep(0.05)
+
     def await_connections(self, watch, proxy, number):
         while proxy.connections < number:
             self.assertIsNone(watch.poll(), "the watch has given up")
@@ -45,6 +51,7 @@ class CutConnectionTest(CliCase):
             job, other = (self.run_cli("submit", *JOB).stdout.strip() for _ in range(2))
             self.run_cli("pause", job)
             watch = self.start_watch(job, proxy)
+            self.await_watch(watch)
             for made in range(1, CUTS + 1):
                 self.await_connections(watch, proxy, made)
                 proxy.cut()
@@ -59,9 +66,7 @@ class CutConnectionTest(CliCase):
             job, other = (self.run_cli("submit", *JOB).stdout.strip() for _ in range(2))
             self.run_cli("pause", job)
             watch = self.start_watch(job, proxy)
-            self.await_connections(watch, proxy, 1)
-            while json.loads(self.run_cli("top", "--json").stdout).get("watches", 0) == 0:
-                time.sleep(0.05)
+            self.await_watch(watch)
             proxy.silence()
             self.run_cli("resume", job)
             self.assert_ends_whole(watch, job, other)
