@@ -58,7 +58,7 @@ Watch::Decision Watch::DecideHeartbeat(Time now, std::optional<Time> wake) {
 
 Watch::Decision Watch::DecideStatement(bool draining, Time now) {
   if (draining) said_draining_ = true;
-  const Decision decision = DecideWrite(Statement(draining), now);
+  Decision decision = DecideWrite(Statement(draining), now);
   writing_ = Write::kStatement;
   return decision;
 }

@@ -29,7 +29,7 @@ absl::StatusOr<bool> UserDirectory::HasUsers() {
   if (has_users_ == true) return true;
   if (absl::Status looked = ForgetWhatChanged(); !looked.ok()) return looked;
   if (has_users_) return *has_users_;
-  const auto some = UserStore(*database_).HasUsers();
+  auto some = UserStore(*database_).HasUsers();
   if (some.ok()) has_users_ = *some;
   return some;
 }
