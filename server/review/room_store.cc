@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/review/room_store.h"
 
-#include <cstring>
 #include <utility>
 
 #include "server/store/error.h"
@@ -32,14 +31,6 @@ std::optional<JobId> JobOf(const std::optional<std::string>& name) {
   return name ? JobId::FromName(*name) : std::nullopt;
 }
 
-// Positive in the database; exact in a double, for clients that have no 64-bit integers.
-std::int64_t RandomEpoch() {
-  std::uint64_t epoch = 0;
-  const auto bytes = RandomBytes<sizeof(epoch)>();
-  std::memcpy(&epoch, bytes.data(), sizeof(epoch));
-  return static_cast<std::int64_t>((epoch >> 11) | 1);
-}
-
 Note NoteOf(const Statement& row) {
   Note note;
   note.sequence = static_cast<std::uint64_t>(row.Integer(0));
@@ -62,21 +53,14 @@ void Apply(const ViewChange& change, RoomView& view) {
   view.tone_mapping = change.tone_mapping.value_or(view.tone_mapping);
 }
 
-std::string Places(std::size_t count) {
-  std::string places;
-  for (std::size_t i = 0; i < count; ++i) places += i == 0 ? "?" : ", ?";
-  return places;
-}
-
 // For rooms of which somebody is owner or member; BindPerson fills its places.
 std::string OfPerson(const RoomStore::Person& person) {
-  return "(owner = ? OR 'rooms/' || uuid IN (SELECT resource FROM grants WHERE grantee IN (" +
-         Places(person.who.size()) + ")))";
+  return "(owner = ? OR 'rooms/' || uuid IN " + ResourcesOf(person.who) + ")";
 }
 
 void BindPerson(const RoomStore::Person& person, Statement& statement) {
   statement.Bind(std::string_view(person.name));
-  for (const Grantee& grantee : person.who) statement.Bind(std::string_view(grantee.text()));
+  BindGrantees(person.who, statement);
 }
 
 }  // namespace
@@ -134,7 +118,7 @@ absl::StatusOr<RoomStore::Row> RoomStore::Find(const RoomId& id, Wanted wanted) 
 absl::StatusOr<Room> RoomStore::Create(const std::string& owner, const std::string& title, Room::Time now) {
   const std::lock_guard lock(mutex_);
   Room room{.id = RoomId::Random(),
-            .epoch = static_cast<std::uint64_t>(RandomEpoch()),
+            .epoch = RandomEpoch(),
             .owner = owner,
             .title = title,
             .create_time = now,

@@ -25,7 +25,7 @@ void SetConnectionLimits(grpc::ServerBuilder& builder, const Limits& limits, std
   // A client without a call under way may not look at its connection for as long as it likes.
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 0);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);  // As many as are due.
-  // Clients may ping an idle connection every 10 s.
+  // So may clients with a call under way, every 10 s.
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);
 }
 

@@ -35,23 +35,27 @@ absl::StatusOr<JobRight> JobAccess::RightOn(const Caller& caller, const JobSpec&
   return *shown ? JobRight::kSee : JobRight::kNone;
 }
 
-absl::StatusOr<JobRecord> JobAccess::FindSeen(const Caller& caller, const JobId& id) const {
+absl::StatusOr<JobAccess::Seen> JobAccess::Find(const Caller& caller, const JobId& id) const {
   auto job = jobs_.Get(id);
-  if (!job.ok()) return job;
+  if (!job.ok()) return job.status();
   const auto right = RightOn(caller, *job->spec);
   if (!right.ok()) return right.status();
   if (*right == JobRight::kNone) return NoSuchJob(id);
-  return job;
+  return Seen{*std::move(job), *right};
+}
+
+absl::StatusOr<JobRecord> JobAccess::FindSeen(const Caller& caller, const JobId& id) const {
+  auto seen = Find(caller, id);
+  if (!seen.ok()) return seen.status();
+  return std::move(seen->job);
 }
 
 absl::Status JobAccess::CheckRight(const Caller& caller, JobRight right, const JobId& id) const {
-  const auto job = jobs_.Get(id);
-  if (!job.ok()) return job.status();
-  const auto has = RightOn(caller, *job->spec);
-  if (!has.ok()) return has.status();
-  if (*has == JobRight::kNone) return NoSuchJob(id);
-  if (*has >= right) return absl::OkStatus();
-  return MakeError(absl::StatusCode::kPermissionDenied, "NOT_YOUR_JOB", id.Name() + " is not yours: " + Rest(*has));
+  const auto seen = Find(caller, id);
+  if (!seen.ok()) return seen.status();
+  if (seen->right >= right) return absl::OkStatus();
+  return MakeError(absl::StatusCode::kPermissionDenied, "NOT_YOUR_JOB",
+                   id.Name() + " is not yours: " + Rest(seen->right));
 }
 
 }  // namespace flatlight

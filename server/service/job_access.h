@@ -36,6 +36,12 @@ class JobAccess {
   absl::Status CheckRight(const Caller& caller, JobRight right, const JobId& id) const;
 
  private:
+  struct Seen {
+    JobRecord job;
+    JobRight right;
+  };
+  absl::StatusOr<Seen> Find(const Caller& caller, const JobId& id) const;
+
   JobStore& jobs_;
   RoomStore& rooms_;
 };

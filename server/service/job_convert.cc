@@ -31,16 +31,6 @@ v1::Job::State PhaseToProto(JobPhase phase) {
   return v1::Job::STATE_UNSPECIFIED;
 }
 
-void SetTime(WallTime time, google::protobuf::Timestamp& out) {
-  using std::chrono::duration_cast;
-  using std::chrono::nanoseconds;
-  using std::chrono::seconds;
-  const auto since_epoch = time.time_since_epoch();
-  const auto whole = std::chrono::floor<seconds>(since_epoch);
-  out.set_seconds(whole.count());
-  out.set_nanos(static_cast<std::int32_t>(duration_cast<nanoseconds>(since_epoch - whole).count()));
-}
-
 void FillProgress(const JobState& state, v1::Progress& out) {
   const RenderProgress& progress = state.progress;
   out.set_fraction(progress.fraction);
@@ -75,6 +65,16 @@ v1::JobClass JobClassToProto(JobClass job_class) {
 }
 
 }  // namespace
+
+void SetTime(WallTime time, google::protobuf::Timestamp& out) {
+  using std::chrono::duration_cast;
+  using std::chrono::nanoseconds;
+  using std::chrono::seconds;
+  const auto since_epoch = time.time_since_epoch();
+  const auto whole = std::chrono::floor<seconds>(since_epoch);
+  out.set_seconds(whole.count());
+  out.set_nanos(static_cast<std::int32_t>(duration_cast<nanoseconds>(since_epoch - whole).count()));
+}
 
 // Threads and skips do not.
 std::string JobKey(const JobSpec& spec, const std::string& build) {

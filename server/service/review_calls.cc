@@ -18,6 +18,11 @@ constexpr std::size_t kMaxRequestIdBytes = 128;
 
 Room::Time Now() { return std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now()); }
 
+// May do all with a room.
+bool Owns(const Caller& caller, const Room& room) {
+  return room.owner == caller.name || caller.role >= Role::kInstructor;
+}
+
 std::string BytesError(std::size_t bytes, std::size_t least, std::size_t most) {
   return std::to_string(bytes) + " bytes; allowed: " + std::to_string(least) + " to " + std::to_string(most);
 }
@@ -28,7 +33,7 @@ absl::StatusOr<Room> ReviewCalls::Find(const Caller& caller, Right right, const 
   const auto id = ParseRoomName(name);
   if (!id.ok()) return id.status();
   auto room = backend_.rooms.Get(*id);
-  if (!room.ok() || room->owner == caller.name || caller.role >= Role::kInstructor) return room;
+  if (!room.ok() || Owns(caller, *room)) return room;
   const auto grants = backend_.rooms.GrantsOf(*id);
   if (!grants.ok()) return grants.status();
   const auto access = AccessOf(*grants, Grantee::Of(caller.name, caller.groups));
@@ -69,8 +74,7 @@ absl::StatusOr<v1::Room> ReviewCalls::Create(const Caller& caller, const v1::Cre
 absl::StatusOr<v1::Room> ReviewCalls::Get(const Caller& caller, const v1::GetRoomRequest& request) {
   const auto room = FindSeen(caller, request.name());
   if (!room.ok()) return room.status();
-  const bool may_share = Find(caller, Right::kOwn, request.name()).ok();
-  return may_share ? WithShares(*room) : RoomToProto(*room);
+  return Owns(caller, *room) ? WithShares(*room) : RoomToProto(*room);
 }
 
 absl::StatusOr<v1::ListRoomsResponse> ReviewCalls::List(const Caller& caller, const v1::ListRoomsRequest& request) {

@@ -12,12 +12,6 @@ namespace {
 constexpr std::size_t kMaxProbeNameBytes = 256;
 constexpr double kMaxExposure = 32;
 
-void SetTime(Room::Time time, google::protobuf::Timestamp& out) {
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
-  out.set_seconds(seconds.time_since_epoch().count());
-  out.set_nanos(static_cast<std::int32_t>(std::chrono::nanoseconds(time - seconds).count()));
-}
-
 absl::StatusOr<std::optional<ToneMapping>> ToneMappingFromProto(v1::ToneMapping mapping) {
   switch (mapping) {
     case v1::TONE_MAPPING_UNSPECIFIED:

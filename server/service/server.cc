@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -59,14 +58,6 @@ constexpr char kAuditLog[] = "/audit.jsonl";  // In the data folder.
 constexpr char kStorageHealth[] = "flatlight.storage";
 constexpr int kQuickThreads = 4;
 constexpr int kSlowThreads = 2;
-
-// Not 0, which a watcher sends that knows no epoch; exact in a double, for clients that have no 64-bit integers.
-std::uint64_t RandomEpoch() {
-  std::uint64_t epoch = 0;
-  const auto bytes = RandomBytes<sizeof(epoch)>();
-  std::memcpy(&epoch, bytes.data(), sizeof(epoch));
-  return (epoch >> 11) | 1;
-}
 
 SchedulerOptions MakeSchedulerOptions(const ServerOptions& options, Metrics& metrics) {
   SchedulerOptions scheduler;

@@ -45,4 +45,14 @@ absl::Status DeleteGrant(Database& database, const std::string& resource, const 
       .Run();
 }
 
+std::string ResourcesOf(const std::vector<Grantee>& who) {
+  std::string places;
+  for (std::size_t i = 0; i < who.size(); ++i) places += i == 0 ? "?" : ", ?";
+  return "(SELECT resource FROM grants WHERE grantee IN (" + places + "))";
+}
+
+void BindGrantees(const std::vector<Grantee>& who, Statement& statement) {
+  for (const Grantee& grantee : who) statement.Bind(std::string_view(grantee.text()));
+}
+
 }  // namespace flatlight

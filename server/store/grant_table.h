@@ -18,6 +18,10 @@ absl::StatusOr<std::vector<Grant>> ReadGrants(Database& database, const std::str
 absl::Status InsertGrant(Database& database, const std::string& resource, const Grant& grant);
 absl::Status DeleteGrant(Database& database, const std::string& resource, const Grantee& grantee);
 
+// In SQL: the resources that are granted to one who is all of `who`, with places for BindGrantees.
+std::string ResourcesOf(const std::vector<Grantee>& who);
+void BindGrantees(const std::vector<Grantee>& who, Statement& statement);
+
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_SERVER_STORE_GRANT_TABLE_H_

@@ -260,15 +260,12 @@ absl::StatusOr<JobArchive::Page> JobArchive::List(std::optional<std::uint64_t> b
 
 absl::StatusOr<JobArchive::Page> JobArchive::ListShared(const std::vector<Grantee>& who, const std::string& owner,
                                                         std::optional<std::uint64_t> before, std::size_t limit) {
-  std::string places;
-  for (std::size_t i = 0; i < who.size(); ++i) places += i == 0 ? "?" : ", ?";
   return ReadPage(storage_, limit, [&](Database& database) {
-    Statement jobs = database.Prepare(std::string(kColumns) +
-                                      "WHERE number < ? AND owner != ? AND 'jobs/' || uuid IN "
-                                      "(SELECT resource FROM grants WHERE grantee IN (" +
-                                      places + ")) ORDER BY number DESC LIMIT ?");
+    Statement jobs =
+        database.Prepare(std::string(kColumns) + "WHERE number < ? AND owner != ? AND 'jobs/' || uuid IN " +
+                         ResourcesOf(who) + " ORDER BY number DESC LIMIT ?");
     jobs.Bind(FirstNumber(before)).Bind(std::string_view(owner));
-    for (const Grantee& grantee : who) jobs.Bind(std::string_view(grantee.text()));
+    BindGrantees(who, jobs);
     jobs.Bind(static_cast<std::int64_t>(limit) + 1);
     return jobs;
   });

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "absl/strings/escaping.h"
 
@@ -28,6 +29,13 @@ std::string RandomHex(std::size_t bytes) {
   std::string random(bytes, '\0');
   FillRandomBytes(reinterpret_cast<unsigned char*>(random.data()), bytes);
   return absl::BytesToHexString(random);
+}
+
+std::uint64_t RandomEpoch() {
+  std::uint64_t epoch = 0;
+  const auto bytes = RandomBytes<sizeof(epoch)>();
+  std::memcpy(&epoch, bytes.data(), sizeof(epoch));
+  return (epoch >> 11) | 1;
 }
 
 }  // namespace flatlight

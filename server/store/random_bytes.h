@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace flatlight {
@@ -20,6 +21,10 @@ std::array<unsigned char, kCount> RandomBytes() {
 
 // So many of them, as twice as many digits 0-9 a-f.
 std::string RandomHex(std::size_t bytes);
+
+// Tells one sequence from another with the same numbers. Not 0, which a watcher sends that knows none; exact in a
+// double, for clients that have no 64-bit integers.
+std::uint64_t RandomEpoch();
 
 }  // namespace flatlight
 

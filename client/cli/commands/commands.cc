@@ -4,7 +4,14 @@
 #include <map>
 #include <string>
 
+#include "client/cli/outputs/outputs.h"
+
 namespace flatlight {
+
+CommandResult Answer(const std::string& text) {
+  if (absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
+  return ExitCode::kDone;
+}
 
 CommandResult RunCommand(const CommandLine& line, Interruption& interruption) {
   static const std::map<std::string, CommandResult (*)(const CommandLine&, Interruption&)> kCommands = {

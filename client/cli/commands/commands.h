@@ -15,6 +15,9 @@ namespace flatlight {
 
 using CommandResult = absl::StatusOr<ExitCode>;
 
+// What most end with: prints the answer, and is done.
+CommandResult Answer(const std::string& text);
+
 CommandResult RunCommand(const CommandLine& line, Interruption& interruption);
 
 // render_command.cc

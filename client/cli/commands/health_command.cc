@@ -2,7 +2,6 @@
 #include "client/cli/commands/commands.h"
 #include "client/cli/commands/server_choice.h"
 #include "client/cli/connection/health.h"
-#include "client/cli/outputs/outputs.h"
 
 namespace flatlight {
 
@@ -14,8 +13,7 @@ CommandResult Health(const CommandLine& line, Interruption& interruption) {
   if (absl::Status healthy = CheckHealth((*server)->address, (*server)->tls, interruption); !healthy.ok())
     return healthy;
   if (line.quiet) return ExitCode::kDone;
-  if (absl::Status printed = PrintBytes((*server)->address.text + " SERVING\n"); !printed.ok()) return printed;
-  return ExitCode::kDone;
+  return Answer((*server)->address.text + " SERVING\n");
 }
 
 }  // namespace flatlight

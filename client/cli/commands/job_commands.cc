@@ -27,12 +27,6 @@ absl::StatusOr<std::unique_ptr<Session>> OpenServer(const CommandLine& line, Int
   return Session::Open(line, Session::WithoutServer::kRefuse, interruption);
 }
 
-// Prints the answer, and ends with kDone.
-CommandResult Answer(const std::string& text) {
-  if (absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
-  return ExitCode::kDone;
-}
-
 // Prints the job as `act` leaves it.
 CommandResult Control(const CommandLine& line, Interruption& interruption,
                       absl::StatusOr<v1::Job> (*act)(Connection&, const std::string&)) {

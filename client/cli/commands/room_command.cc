@@ -17,11 +17,6 @@ namespace {
 
 using Stub = v1::ReviewService::Stub;
 
-CommandResult Answer(const std::string& text) {
-  if (absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
-  return ExitCode::kDone;
-}
-
 // `act(connection, name)` with the room that the line names.
 template <class Act>
 CommandResult InRoom(const CommandLine& line, Interruption& interruption, const Act& act) {
@@ -39,8 +34,22 @@ CommandResult AnswerRoom(const CommandLine& line, const absl::StatusOr<v1::Room>
   return Answer(line.json ? ToJson(*room) : text(*room));
 }
 
-std::string RoomShares(const v1::Room& room) {
-  return room.name() + " shared with " + SharesText(room.shares()) + '\n';
+// Sends `request` for each grantee, and prints the room as the last call leaves it.
+template <class Method, class Request, class SetGrantee>
+CommandResult ChangeShares(const CommandLine& line, Interruption& interruption, Method method, Request& request,
+                           const SetGrantee& set_grantee) {
+  return InRoom(line, interruption, [&](Connection& connection, const std::string& name) {
+    request.set_name(name);
+    absl::StatusOr<v1::Room> room;
+    for (const std::string& grantee : line.grantees) {
+      set_grantee(grantee);
+      room = CallRooms(connection, method, request);
+      if (!room.ok()) break;
+    }
+    return AnswerRoom(line, room, [](const v1::Room& shared) {
+      return shared.name() + " shared with " + SharesText(shared.shares()) + '\n';
+    });
+  });
 }
 
 }  // namespace
@@ -137,32 +146,16 @@ CommandResult LookInRoom(const CommandLine& line, Interruption& interruption) {
 }
 
 CommandResult ShareRoom(const CommandLine& line, Interruption& interruption) {
-  return InRoom(line, interruption, [&](Connection& connection, const std::string& name) {
-    v1::ShareRoomRequest request;
-    request.set_name(name);
-    request.mutable_share()->set_access(line.control ? v1::Share::CONTROL : v1::Share::READ);
-    absl::StatusOr<v1::Room> room;
-    for (const std::string& grantee : line.grantees) {
-      request.mutable_share()->set_grantee(grantee);
-      room = CallRooms(connection, &Stub::ShareRoom, request);
-      if (!room.ok()) break;
-    }
-    return AnswerRoom(line, room, RoomShares);
-  });
+  v1::ShareRoomRequest request;
+  request.mutable_share()->set_access(line.control ? v1::Share::CONTROL : v1::Share::READ);
+  return ChangeShares(line, interruption, &Stub::ShareRoom, request,
+                      [&](const std::string& grantee) { request.mutable_share()->set_grantee(grantee); });
 }
 
 CommandResult UnshareRoom(const CommandLine& line, Interruption& interruption) {
-  return InRoom(line, interruption, [&](Connection& connection, const std::string& name) {
-    v1::UnshareRoomRequest request;
-    request.set_name(name);
-    absl::StatusOr<v1::Room> room;
-    for (const std::string& grantee : line.grantees) {
-      request.set_grantee(grantee);
-      room = CallRooms(connection, &Stub::UnshareRoom, request);
-      if (!room.ok()) break;
-    }
-    return AnswerRoom(line, room, RoomShares);
-  });
+  v1::UnshareRoomRequest request;
+  return ChangeShares(line, interruption, &Stub::UnshareRoom, request,
+                      [&](const std::string& grantee) { request.set_grantee(grantee); });
 }
 
 CommandResult CloseRoom(const CommandLine& line, Interruption& interruption) {

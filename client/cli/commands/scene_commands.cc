@@ -16,11 +16,6 @@
 namespace flatlight {
 namespace {
 
-CommandResult Answer(const std::string& text) {
-  if (absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
-  return ExitCode::kDone;
-}
-
 std::string ShortName(const v1::SceneInfo& scene) {
   const std::string id = scene.name().substr(scene.name().find('/') + 1);
   return scene.gallery() ? "gallery:" + id : id;

@@ -7,7 +7,6 @@
 #include "client/cli/formats/json_text.h"
 #include "client/cli/jobs/job_calls.h"
 #include "client/cli/jobs/job_name.h"
-#include "client/cli/outputs/outputs.h"
 
 namespace flatlight {
 namespace {
@@ -27,8 +26,7 @@ CommandResult ChangeShares(const CommandLine& line, Interruption& interruption, 
   }
   if (line.quiet && !line.json) return ExitCode::kDone;
   const std::string text = line.json ? ToJson(*job) : job->name() + " shared with " + SharesText(job->shares()) + '\n';
-  if (absl::Status printed = PrintBytes(text); !printed.ok()) return printed;
-  return ExitCode::kDone;
+  return Answer(text);
 }
 
 }  // namespace

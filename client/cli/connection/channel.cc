@@ -25,4 +25,8 @@ std::shared_ptr<grpc::Channel> NewChannel(const ServerAddress& address, const Tl
   return grpc::CreateCustomChannel(address.target, grpc::SslCredentials({tls.ca, tls.key, tls.cert}), arguments);
 }
 
+absl::Status CannotReach(const ServerAddress& address, const Tls& tls, const std::string& message) {
+  return absl::UnavailableError("cannot reach the server at " + address.text + ": " + message + TlsHint(tls, message));
+}
+
 }  // namespace flatlight

@@ -39,9 +39,7 @@ std::unique_ptr<grpc::ClientContext> Connection::NewContext() const {
 absl::Status Connection::Explain(const grpc::Status& status) const {
   if (status.error_code() == grpc::StatusCode::CANCELLED && interruption_.Requested())
     return InterruptedError("interrupted");
-  if (status.error_code() == grpc::StatusCode::UNAVAILABLE)
-    return absl::UnavailableError("cannot reach the server at " + address_.text + ": " + status.error_message() +
-                                  TlsHint(tls_, status.error_message()));
+  if (status.error_code() == grpc::StatusCode::UNAVAILABLE) return CannotReach(address_, tls_, status.error_message());
   if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED)
     return absl::UnavailableError("the server at " + address_.text + " did not answer in time");
   return ErrorFromRpc(status);

@@ -32,9 +32,7 @@ absl::Status CheckHealth(const ServerAddress& address, const Tls& tls, Interrupt
   const std::string server = "the server at " + address.text;
   if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED)
     return absl::UnavailableError(server + " did not answer within " + std::to_string(kPatience.count()) + " s");
-  if (!status.ok())
-    return absl::UnavailableError("cannot reach " + server + ": " + status.error_message() +
-                                  TlsHint(tls, status.error_message()));
+  if (!status.ok()) return CannotReach(address, tls, status.error_message());
   if (response.status() == health::HealthCheckResponse::SERVING) return absl::OkStatus();
   return absl::UnavailableError(server + " says that it is " +
                                 health::HealthCheckResponse::ServingStatus_Name(response.status()));

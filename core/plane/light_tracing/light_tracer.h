@@ -33,6 +33,7 @@ struct LightStep {
 class LightTracer {
  public:
   // `seen`: encloses the images. max_bounces: reflections and refractions before light counts no more; absent: all.
+  // `least_share`, in (0, 1]: of the flux a path began with; below it, a path goes on by roulette.
   LightTracer(std::shared_ptr<const RayCaster> caster, const Box& seen, std::optional<std::uint32_t> max_bounces,
               double least_share = 1);
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """`flatlight watch` on a connection that is cut, or falls silent. Run with FLATLIGHT FLATLIGHTD."""
+import contextlib
 import json
 import os
 import subprocess
@@ -19,11 +20,18 @@ CUTS = 5
 
 
 class CutConnectionTest(CliCase):
-    def start_watch(self, job, proxy):
-        watch = subprocess.Popen([FLATLIGHT, "watch", job, "--json", "--server", proxy.address], text=True,
-                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=self.environment)
-        self.addCleanup(watch.kill)
-        return watch
+    @contextlib.contextmanager
+    def watched_job(self):
+        """A job that rests, its twin that runs, and a watch of the first through a proxy."""
+        with Daemon(FLATLIGHTD) as daemon, Proxy(daemon.address) as proxy:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            job, other = (self.run_cli("submit", *JOB).stdout.strip() for _ in range(2))
+            self.run_cli("pause", job)
+            watch = subprocess.Popen([FLATLIGHT, "watch", job, "--json", "--server", proxy.address], text=True,
+                                     stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=self.environment)
+            self.addCleanup(watch.kill)
+            self.await_watch(watch)
+            yield job, other, watch, proxy
 
     # A command whose first call already fails says so, and ends.
     def await_watch(self, watch):
@@ -46,12 +54,7 @@ class CutConnectionTest(CliCase):
 
     # The job rests meanwhile, so that no cut comes too late.
     def test_a_watch_that_is_cut_again_and_again_ends_with_the_job(self):
-        with Daemon(FLATLIGHTD) as daemon, Proxy(daemon.address) as proxy:
-            self.environment["FLATLIGHT_SERVER"] = daemon.address
-            job, other = (self.run_cli("submit", *JOB).stdout.strip() for _ in range(2))
-            self.run_cli("pause", job)
-            watch = self.start_watch(job, proxy)
-            self.await_watch(watch)
+        with self.watched_job() as (job, other, watch, proxy):
             for made in range(1, CUTS + 1):
                 self.await_connections(watch, proxy, made)
                 proxy.cut()
@@ -61,12 +64,7 @@ class CutConnectionTest(CliCase):
 
     # No error tells that the other side has vanished.
     def test_a_watch_whose_connection_falls_silent_makes_another(self):
-        with Daemon(FLATLIGHTD) as daemon, Proxy(daemon.address) as proxy:
-            self.environment["FLATLIGHT_SERVER"] = daemon.address
-            job, other = (self.run_cli("submit", *JOB).stdout.strip() for _ in range(2))
-            self.run_cli("pause", job)
-            watch = self.start_watch(job, proxy)
-            self.await_watch(watch)
+        with self.watched_job() as (job, other, watch, proxy):
             proxy.silence()
             self.run_cli("resume", job)
             self.assert_ends_whole(watch, job, other)
