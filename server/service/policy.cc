@@ -45,6 +45,8 @@ const std::vector<PolicyRow>& Policy() {
       {"GetSceneRequest", Role::kStudent},
       {"ListScenesRequest", Role::kStudent},
       {"DeleteSceneRequest", Role::kStudent},
+      {"ShareSceneRequest", Role::kStudent},  // Whoever has uploaded it.
+      {"UnshareSceneRequest", Role::kStudent},
       {"ValidateSceneRequest", Role::kStudent},
       {"GetCapabilitiesRequest", Role::kStudent},
       {"GetActivityRequest", Role::kStudent},  // Students see others only as numbers.
@@ -62,13 +64,23 @@ absl::Status CheckRole(const Caller& caller, std::string_view request) {
 }
 
 bool MaySeeScene(const Caller& caller, const std::string& sha256, SceneStore& scenes) {
-  return caller.role >= Role::kGrader || scenes.Owns(caller.name, sha256);
+  return caller.role >= Role::kGrader || scenes.Owns(caller.name, sha256) ||
+         !scenes.SharedBy(sha256, Grantee::Of(caller.name, caller.groups)).empty();
 }
 
 absl::Status DeleteSeenScene(const Caller& caller, const std::string& sha256, SceneStore& scenes) {
   if (caller.role >= Role::kInstructor) return scenes.Delete(sha256);
   absl::Status disowned = scenes.Disown(caller.name, sha256);
-  if (!absl::IsNotFound(disowned) || !MaySeeScene(caller, sha256, scenes)) return disowned;
+  if (!absl::IsNotFound(disowned)) return disowned;
+  bool controls = false;
+  for (const auto& [owner, access] : scenes.SharedBy(sha256, Grantee::Of(caller.name, caller.groups))) {
+    if (access < Access::kControl) continue;
+    controls = true;
+    absl::Status taken = scenes.Disown(owner, sha256);
+    if (!taken.ok() && !absl::IsNotFound(taken)) return taken;  // Its owner may have deleted it meanwhile.
+  }
+  if (controls) return absl::OkStatus();
+  if (!MaySeeScene(caller, sha256, scenes)) return disowned;
   return Denied("NOT_YOUR_SCENE", "scenes/" + sha256 + " is not yours: you may read it, but not delete it");
 }
 

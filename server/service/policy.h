@@ -30,11 +30,11 @@ const std::vector<PolicyRow>& Policy();
 // OK, or PERMISSION_DENIED with ROLE_TOO_LOW; also where the table has no row.
 absl::Status CheckRole(const Caller& caller, std::string_view request);
 
-// Of uploaded scenes: one's own uploads, and all of them for graders, instructors and admins. The hash alone opens
-// nothing.
+// Of uploaded scenes: one's own uploads, those that are shared with one, and all of them for graders, instructors and
+// admins. The hash alone opens nothing.
 bool MaySeeScene(const Caller& caller, const std::string& sha256, SceneStore& scenes);
-// Deletes an uploaded scene: one's own upload, for an instructor or admin everybody's. One that is seen, but not one's
-// own, is PERMISSION_DENIED with NOT_YOUR_SCENE.
+// Deletes an uploaded scene: one's own upload, else those that are shared with one with control; for an instructor or
+// admin everybody's. One that is seen, and no more, is PERMISSION_DENIED with NOT_YOUR_SCENE.
 absl::Status DeleteSeenScene(const Caller& caller, const std::string& sha256, SceneStore& scenes);
 
 }  // namespace flatlight

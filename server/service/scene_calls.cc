@@ -10,6 +10,7 @@
 #include "server/convert/result_convert.h"
 #include "server/convert/scene_reader.h"
 #include "server/gallery/gallery.h"
+#include "server/service/job_convert.h"
 #include "server/service/machine.h"
 #include "server/service/page.h"
 #include "server/service/policy.h"
@@ -38,6 +39,57 @@ std::optional<std::uint64_t> AddGallery(std::uint64_t position, std::size_t size
   return position < gallery.size() ? std::optional(position) : std::nullopt;
 }
 
+// The {scene} of scenes/{scene}.
+std::string IdOf(const std::string& name) { return name.substr(std::string("scenes/").size()); }
+
+// Who has an upload, as far as the caller may know.
+void AddOwners(const Caller& caller, const std::string& sha256, SceneStore& scenes, v1::SceneInfo& info) {
+  if (caller.role >= Role::kGrader) {
+    for (const std::string& owner : scenes.OwnersOf(sha256)) info.add_owners(owner);
+    return;
+  }
+  if (scenes.Owns(caller.name, sha256)) info.add_owners(caller.name);
+  for (const auto& [owner, access] : scenes.SharedBy(sha256, Grantee::Of(caller.name, caller.groups))) {
+    if (owner != caller.name) info.add_owners(owner);
+  }
+}
+
+void AddUploads(const Caller& caller, const ScenePage& uploads, SceneStore& scenes, v1::ListScenesResponse& response) {
+  for (const StoredScene& scene : uploads.scenes) {
+    v1::SceneInfo& info = *response.add_scenes();
+    info.set_name("scenes/" + scene.sha256);
+    info.set_title(scene.title);
+    info.set_bytes(static_cast<double>(scene.bytes->size()));
+    AddOwners(caller, scene.sha256, scenes, info);
+  }
+}
+
+// With its owners, and the caller's own shares.
+void AddSharing(const Caller& caller, SceneStore& scenes, v1::SceneInfo& info) {
+  AddOwners(caller, IdOf(info.name()), scenes, info);
+  for (const Grant& grant : scenes.GrantsOf(caller.name, IdOf(info.name()))) *info.add_shares() = GrantToProto(grant);
+}
+
+// Does `action(hash)` for an upload of the caller's own.
+template <class Action>
+absl::StatusOr<v1::SceneInfo> ChangeShares(Backend& backend, const Caller& caller, const std::string& name,
+                                           const Action& action) {
+  auto scene = FindSeenScene(caller, name, backend.scenes);
+  if (!scene.ok()) return scene.status();
+  if (scene->info.gallery()) {
+    return MakeError(absl::StatusCode::kFailedPrecondition, "GALLERY_SCENE",
+                     name + " belongs to the gallery, which everybody has");
+  }
+  const std::string sha256 = IdOf(name);
+  if (!backend.scenes.Owns(caller.name, sha256)) {
+    return MakeError(absl::StatusCode::kPermissionDenied, "NOT_YOUR_SCENE",
+                     name + " is not yours: only who has uploaded it shares it");
+  }
+  if (absl::Status changed = action(sha256); !changed.ok()) return changed;
+  AddSharing(caller, backend.scenes, scene->info);
+  return std::move(scene->info);
+}
+
 }  // namespace
 
 absl::StatusOr<v1::UploadSceneResponse> UploadScene(Backend& backend, const Caller& caller,
@@ -61,18 +113,26 @@ absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const Caller& ca
     return MakeDiagnosticsError("BAD_SCENE", "the scene", diagnostics);
   }
   *response.mutable_info() = std::move(scene->info);
-  if (!response.info().gallery()) response.mutable_info()->set_title(response.scene().name());
+  if (response.info().gallery()) return response;
+  response.mutable_info()->set_title(response.scene().name());
+  AddSharing(caller, backend.scenes, *response.mutable_info());
   return response;
 }
 
 absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const Caller& caller,
                                                   const v1::ListScenesRequest& request) {
+  if (request.shared() && request.own()) return MakeFieldError("own", "true; allowed: false, with shared");
   std::optional<std::string> owner;
-  if (caller.role < Role::kGrader) owner = caller.name;
-  const std::string list = (owner ? "scenes of " : "all scenes, for ") + caller.name;
+  if (caller.role < Role::kGrader || request.own()) owner = caller.name;
+  const bool gallery = !request.shared() && !request.own();
+  const std::string list = (request.shared() ? "scenes shared with "
+                            : request.own()  ? "own scenes of "
+                            : owner          ? "scenes of "
+                                             : "all scenes, for ") +
+                           caller.name;
   const auto page = ParsePage(backend.page_tokens, list, request.page_size(), request.page_token());
   if (!page.ok()) return page.status();
-  const std::uint64_t position = page->position.value_or(0);
+  const std::uint64_t position = page->position.value_or(gallery ? 0 : kUploads);
   v1::ListScenesResponse response;
   const auto go_on_at = [&](std::uint64_t next) {
     response.set_next_page_token(backend.page_tokens.Seal(list, next));
@@ -84,16 +144,12 @@ absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const Caller
   std::optional<std::uint64_t> before;
   if (position > kUploads) before = position - kUploads;
   const std::size_t room = page->size - static_cast<std::size_t>(response.scenes_size());
-  const ScenePage uploads = backend.scenes.List(owner, before, std::max<std::size_t>(room, 1));
-  if (room == 0) {
-    return uploads.scenes.empty() ? response : go_on_at(kUploads);
-  }
-  for (const StoredScene& scene : uploads.scenes) {
-    v1::SceneInfo& info = *response.add_scenes();
-    info.set_name("scenes/" + scene.sha256);
-    info.set_title(scene.title);
-    info.set_bytes(static_cast<double>(scene.bytes->size()));
-  }
+  const std::size_t limit = std::max<std::size_t>(room, 1);
+  const ScenePage uploads =
+      request.shared() ? backend.scenes.ListShared(Grantee::Of(caller.name, caller.groups), caller.name, before, limit)
+                       : backend.scenes.List(owner, before, limit);
+  if (room == 0) return uploads.scenes.empty() ? response : go_on_at(kUploads);
+  AddUploads(caller, uploads, backend.scenes, response);
   return uploads.next_before ? go_on_at(kUploads + *uploads.next_before) : response;
 }
 
@@ -105,10 +161,25 @@ absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const Call
     return MakeError(absl::StatusCode::kFailedPrecondition, "GALLERY_SCENE",
                      request.name() + " belongs to the gallery and stays");
   }
-  const std::string sha256 = request.name().substr(std::string("scenes/").size());
+  const std::string sha256 = IdOf(request.name());
   if (absl::Status deleted = DeleteSeenScene(caller, sha256, backend.scenes); !deleted.ok()) return deleted;
   if (!backend.scenes.Get(sha256).ok()) backend.built_scenes.Drop(sha256);
   return v1::DeleteSceneResponse();
+}
+
+absl::StatusOr<v1::SceneInfo> ShareScene(Backend& backend, const Caller& caller, const v1::ShareSceneRequest& request) {
+  const auto grant = GrantFromProto(request.share());
+  if (!grant.ok()) return grant.status();
+  return ChangeShares(backend, caller, request.name(),
+                      [&](const std::string& sha256) { return backend.scenes.Share(caller.name, sha256, *grant); });
+}
+
+absl::StatusOr<v1::SceneInfo> UnshareScene(Backend& backend, const Caller& caller,
+                                           const v1::UnshareSceneRequest& request) {
+  const auto grantee = GranteeFromProto("grantee", request.grantee());
+  if (!grantee.ok()) return grantee.status();
+  return ChangeShares(backend, caller, request.name(),
+                      [&](const std::string& sha256) { return backend.scenes.Unshare(caller.name, sha256, *grantee); });
 }
 
 absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const Caller& caller,

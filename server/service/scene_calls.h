@@ -19,6 +19,9 @@ absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const Caller
                                                   const v1::ListScenesRequest& request);
 absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const Caller& caller,
                                                     const v1::DeleteSceneRequest& request);
+absl::StatusOr<v1::SceneInfo> ShareScene(Backend& backend, const Caller& caller, const v1::ShareSceneRequest& request);
+absl::StatusOr<v1::SceneInfo> UnshareScene(Backend& backend, const Caller& caller,
+                                           const v1::UnshareSceneRequest& request);
 absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const Caller& caller,
                                                         const v1::ValidateSceneRequest& request,
                                                         const Proceed& proceed);

@@ -42,6 +42,20 @@ grpc::ServerUnaryReactor* SceneService::DeleteScene(Context* context, const Byte
                                         });
 }
 
+grpc::ServerUnaryReactor* SceneService::ShareScene(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::ShareSceneRequest>(backend_, context, request, response, kQuickLane,
+                                       [this](const Caller& caller, const v1::ShareSceneRequest& r) {
+                                         return flatlight::ShareScene(backend_, caller, r);
+                                       });
+}
+
+grpc::ServerUnaryReactor* SceneService::UnshareScene(Context* context, const Bytes* request, Bytes* response) {
+  return Answer<v1::UnshareSceneRequest>(backend_, context, request, response, kQuickLane,
+                                         [this](const Caller& caller, const v1::UnshareSceneRequest& r) {
+                                           return flatlight::UnshareScene(backend_, caller, r);
+                                         });
+}
+
 grpc::ServerUnaryReactor* SceneService::ValidateScene(Context* context, const Bytes* request, Bytes* response) {
   const auto lane = [this](const v1::ValidateSceneRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
   return Answer<v1::ValidateSceneRequest>(backend_, context, request, response, lane,

@@ -11,7 +11,8 @@ namespace flatlight {
 using RawSceneService =
     v1::SceneService::WithRawCallbackMethod_UploadScene<v1::SceneService::WithRawCallbackMethod_GetScene<
         v1::SceneService::WithRawCallbackMethod_ListScenes<v1::SceneService::WithRawCallbackMethod_DeleteScene<
-            v1::SceneService::WithRawCallbackMethod_ValidateScene<v1::SceneService::Service>>>>>;
+            v1::SceneService::WithRawCallbackMethod_ShareScene<v1::SceneService::WithRawCallbackMethod_UnshareScene<
+                v1::SceneService::WithRawCallbackMethod_ValidateScene<v1::SceneService::Service>>>>>>>;
 
 // gRPC's side of SceneService; the calls themselves are in scene_calls.h.
 class SceneService final : public RawSceneService {
@@ -24,6 +25,8 @@ class SceneService final : public RawSceneService {
   grpc::ServerUnaryReactor* GetScene(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerUnaryReactor* ListScenes(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerUnaryReactor* DeleteScene(Context* context, const Bytes* request, Bytes* response) override;
+  grpc::ServerUnaryReactor* ShareScene(Context* context, const Bytes* request, Bytes* response) override;
+  grpc::ServerUnaryReactor* UnshareScene(Context* context, const Bytes* request, Bytes* response) override;
   grpc::ServerUnaryReactor* ValidateScene(Context* context, const Bytes* request, Bytes* response) override;
 
  private:

@@ -4,11 +4,18 @@
 #include <utility>
 #include <vector>
 
+#include "server/store/grant_table.h"
+
 namespace flatlight {
 
 namespace {
 
 using Writing = Storage::Writing;
+
+// Of an owner's shares of a scene, in the table of grants.
+std::string ResourceOf(const std::string& owner, const std::string& sha256) {
+  return "scenes/" + sha256 + "/owners/" + owner;
+}
 
 absl::Status Remove(Writing& writing, const std::string& sha256) {
   absl::Status removed = writing.Prepare("DELETE FROM scenes WHERE sha256 = ?").Bind(std::string_view(sha256)).Run();
@@ -52,7 +59,12 @@ absl::Status DurableSceneStore::RestoreOwners() {
       const auto row = rows.Step();
       if (!row.ok()) return row.status();
       if (!*row) return absl::OkStatus();
-      memory_.AddOwner(rows.Bytes(0), rows.Bytes(1), rows.Bytes(2));
+      const std::string owner = rows.Bytes(0), sha256 = rows.Bytes(1);
+      memory_.AddOwner(owner, sha256, rows.Bytes(2));
+      const auto grants = ReadGrants(database, ResourceOf(owner, sha256));
+      if (!grants.ok()) return grants.status();
+      for (const Grant& grant : *grants)
+        memory_.Share(owner, sha256, grant).IgnoreError();  // A damaged one is missing.
     }
   });
 }
@@ -113,7 +125,27 @@ bool DurableSceneStore::SetTitle(const std::string& reader, const std::string& s
   return true;
 }
 
+// What cannot be written has not happened. In memory first: that says whether it may be.
+absl::Status DurableSceneStore::Share(const std::string& owner, const std::string& sha256, const Grant& grant) {
+  const std::lock_guard lock(sharing_);
+  absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
+    if (!memory_.Owns(owner, sha256)) return NoSuchScene(sha256);
+    return InsertGrant(writing.database(), ResourceOf(owner, sha256), grant);
+  });
+  return written.ok() ? memory_.Share(owner, sha256, grant) : written;
+}
+
+absl::Status DurableSceneStore::Unshare(const std::string& owner, const std::string& sha256, const Grantee& grantee) {
+  const std::lock_guard lock(sharing_);
+  absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
+    if (!memory_.Owns(owner, sha256)) return NoSuchScene(sha256);
+    return DeleteGrant(writing.database(), ResourceOf(owner, sha256), grantee);
+  });
+  return written.ok() ? memory_.Unshare(owner, sha256, grantee) : written;
+}
+
 absl::Status DurableSceneStore::Disown(const std::string& owner, const std::string& sha256) {
+  const std::lock_guard lock(sharing_);
   absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
     absl::Status disowned = writing.Prepare("DELETE FROM scene_owners WHERE owner = ? AND sha256 = ?")
                                 .Bind(std::string_view(owner))
@@ -130,6 +162,7 @@ absl::Status DurableSceneStore::Disown(const std::string& owner, const std::stri
 }
 
 absl::Status DurableSceneStore::Delete(const std::string& sha256) {
+  const std::lock_guard lock(sharing_);
   absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
     absl::Status disowned =
         writing.Prepare("DELETE FROM scene_owners WHERE sha256 = ?").Bind(std::string_view(sha256)).Run();

@@ -2,7 +2,10 @@
 #ifndef FLATLIGHT_SERVER_STORE_DURABLE_SCENE_STORE_H_
 #define FLATLIGHT_SERVER_STORE_DURABLE_SCENE_STORE_H_
 
+#include <map>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include "server/store/memory_scene_store.h"
 #include "server/store/storage.h"
@@ -27,6 +30,19 @@ class DurableSceneStore final : public SceneStore {
                  std::size_t limit) override {
     return memory_.List(owner, before, limit);
   }
+  ScenePage ListShared(const std::vector<Grantee>& who, const std::string& reader, std::optional<std::uint64_t> before,
+                       std::size_t limit) override {
+    return memory_.ListShared(who, reader, before, limit);
+  }
+  std::vector<std::string> OwnersOf(const std::string& sha256) override { return memory_.OwnersOf(sha256); }
+  absl::Status Share(const std::string& owner, const std::string& sha256, const Grant& grant) override;
+  absl::Status Unshare(const std::string& owner, const std::string& sha256, const Grantee& grantee) override;
+  std::vector<Grant> GrantsOf(const std::string& owner, const std::string& sha256) override {
+    return memory_.GrantsOf(owner, sha256);
+  }
+  std::map<std::string, Access> SharedBy(const std::string& sha256, const std::vector<Grantee>& who) override {
+    return memory_.SharedBy(sha256, who);
+  }
   absl::Status Disown(const std::string& owner, const std::string& sha256) override;
   absl::Status Delete(const std::string& sha256) override;
 
@@ -35,6 +51,7 @@ class DurableSceneStore final : public SceneStore {
   absl::Status RestoreOwners();
   absl::Status Keep(const std::string& owner, const StoredScene& scene);
 
+  std::mutex sharing_;  // Held while shares change, and what they depend on: in memory as on disk.
   MemorySceneStore memory_;
   Storage& storage_;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grants in a database. A resource is named as callers name it: "jobs/{uuid}".
+// Grants in a database. A resource is named as callers name it: "jobs/{uuid}"; or, of several owners, below that:
+// "scenes/{sha256}/owners/{owner}".
 #ifndef FLATLIGHT_SERVER_STORE_GRANT_TABLE_H_
 #define FLATLIGHT_SERVER_STORE_GRANT_TABLE_H_
 

@@ -138,6 +138,13 @@ MemorySceneStore::Entry* MemorySceneStore::Find(const std::string& sha256) {
   return number == numbers_.end() ? nullptr : &scenes_.at(number->second);
 }
 
+MemorySceneStore::Ownership* MemorySceneStore::FindOwnership(const std::string& owner, const std::string& sha256) {
+  Entry* entry = Find(sha256);
+  if (entry == nullptr) return nullptr;
+  const auto found = entry->owners.find(owner);
+  return found == entry->owners.end() ? nullptr : &found->second;
+}
+
 void MemorySceneStore::AddLocked(StoredScene scene) {
   used_bytes_ += scene.bytes->size();
   const std::uint64_t number = next_number_++;
@@ -151,7 +158,7 @@ void MemorySceneStore::AddOwnerLocked(const std::string& owner, const std::strin
   auto& owned = owned_[owner];
   const std::uint64_t number = owned.empty() ? 1 : owned.rbegin()->first + 1;
   owned[number] = {sha256, title};
-  entry->owners[owner] = number;
+  entry->owners[owner] = {number};
 }
 
 void MemorySceneStore::ForgetOwned(const std::string& owner, std::uint64_t number) {
@@ -163,7 +170,7 @@ void MemorySceneStore::ForgetOwned(const std::string& owner, std::uint64_t numbe
 void MemorySceneStore::Erase(const std::string& sha256) {
   const auto number = numbers_.find(sha256);
   const auto scene = scenes_.find(number->second);
-  for (const auto& [owner, place] : scene->second.owners) ForgetOwned(owner, place);
+  for (const auto& [owner, ownership] : scene->second.owners) ForgetOwned(owner, ownership.number);
   used_bytes_ -= scene->second.scene.bytes->size();
   scenes_.erase(scene);
   numbers_.erase(number);
@@ -198,7 +205,7 @@ bool MemorySceneStore::SetTitle(const std::string& reader, const std::string& sh
   if (entry == nullptr) return false;
   bool news = std::exchange(entry->scene.title, title) != title;
   if (const auto own = entry->owners.find(reader); own != entry->owners.end()) {
-    news |= std::exchange(owned_.at(reader).at(own->second).title, title) != title;
+    news |= std::exchange(owned_.at(reader).at(own->second.number).title, title) != title;
   }
   return news;
 }
@@ -225,6 +232,72 @@ ScenePage MemorySceneStore::List(const std::optional<std::string>& owner, std::o
   return page;
 }
 
+ScenePage MemorySceneStore::ListShared(const std::vector<Grantee>& who, const std::string& reader,
+                                       std::optional<std::uint64_t> before, std::size_t limit) {
+  const std::lock_guard lock(mutex_);
+  ScenePage page;
+  std::uint64_t last = 0;
+  auto scene = before ? scenes_.lower_bound(*before) : scenes_.end();
+  while (scene != scenes_.begin()) {
+    --scene;
+    const auto& [number, entry] = *scene;
+    if (entry.owners.count(reader) > 0) continue;
+    bool shared = false;
+    std::string title;
+    for (const auto& [owner, ownership] : entry.owners) {
+      if (!AccessOf(ownership.grants, who)) continue;
+      shared = true;
+      if (title.empty()) title = owned_.at(owner).at(ownership.number).title;
+    }
+    if (!shared) continue;
+    if (page.scenes.size() == limit) {
+      page.next_before = last;
+      break;
+    }
+    page.scenes.push_back({entry.scene.sha256, std::move(title), entry.scene.bytes});
+    last = number;
+  }
+  return page;
+}
+
+std::vector<std::string> MemorySceneStore::OwnersOf(const std::string& sha256) {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> owners;
+  if (const Entry* entry = Find(sha256)) {
+    for (const auto& [owner, ownership] : entry->owners) owners.push_back(owner);
+  }
+  return owners;
+}
+
+absl::Status MemorySceneStore::Share(const std::string& owner, const std::string& sha256, const Grant& grant) {
+  const std::lock_guard lock(mutex_);
+  Ownership* ownership = FindOwnership(owner, sha256);
+  return ownership == nullptr ? NoSuchScene(sha256) : AddGrant("scenes/" + sha256, grant, ownership->grants);
+}
+
+absl::Status MemorySceneStore::Unshare(const std::string& owner, const std::string& sha256, const Grantee& grantee) {
+  const std::lock_guard lock(mutex_);
+  Ownership* ownership = FindOwnership(owner, sha256);
+  return ownership == nullptr ? NoSuchScene(sha256) : RemoveGrant("scenes/" + sha256, grantee, ownership->grants);
+}
+
+std::vector<Grant> MemorySceneStore::GrantsOf(const std::string& owner, const std::string& sha256) {
+  const std::lock_guard lock(mutex_);
+  const Ownership* ownership = FindOwnership(owner, sha256);
+  return ownership == nullptr ? std::vector<Grant>() : ownership->grants;
+}
+
+std::map<std::string, Access> MemorySceneStore::SharedBy(const std::string& sha256, const std::vector<Grantee>& who) {
+  const std::lock_guard lock(mutex_);
+  std::map<std::string, Access> shared;
+  if (const Entry* entry = Find(sha256)) {
+    for (const auto& [owner, ownership] : entry->owners) {
+      if (const auto access = AccessOf(ownership.grants, who)) shared[owner] = *access;
+    }
+  }
+  return shared;
+}
+
 absl::Status MemorySceneStore::Disown(const std::string& owner, const std::string& sha256) {
   const std::lock_guard lock(mutex_);
   Entry* entry = Find(sha256);
@@ -233,7 +306,7 @@ absl::Status MemorySceneStore::Disown(const std::string& owner, const std::strin
     Erase(sha256);
     return absl::OkStatus();
   }
-  ForgetOwned(owner, entry->owners.at(owner));
+  ForgetOwned(owner, entry->owners.at(owner).number);
   entry->owners.erase(owner);
   return absl::OkStatus();
 }

@@ -33,6 +33,13 @@ class MemorySceneStore final : public SceneStore {
   bool SetTitle(const std::string& reader, const std::string& sha256, const std::string& title) override;
   ScenePage List(const std::optional<std::string>& owner, std::optional<std::uint64_t> before,
                  std::size_t limit) override;
+  ScenePage ListShared(const std::vector<Grantee>& who, const std::string& reader, std::optional<std::uint64_t> before,
+                       std::size_t limit) override;
+  std::vector<std::string> OwnersOf(const std::string& sha256) override;
+  absl::Status Share(const std::string& owner, const std::string& sha256, const Grant& grant) override;
+  absl::Status Unshare(const std::string& owner, const std::string& sha256, const Grantee& grantee) override;
+  std::vector<Grant> GrantsOf(const std::string& owner, const std::string& sha256) override;
+  std::map<std::string, Access> SharedBy(const std::string& sha256, const std::vector<Grantee>& who) override;
   absl::Status Disown(const std::string& owner, const std::string& sha256) override;
   absl::Status Delete(const std::string& sha256) override;
 
@@ -51,9 +58,13 @@ class MemorySceneStore final : public SceneStore {
   };
 
   using UploadName = std::pair<std::string, std::string>;  // Owner and hash: nobody sees how far another one is.
+  struct Ownership {
+    std::uint64_t number = 0;  // Of the scene among those of its owner.
+    std::vector<Grant> grants = {};
+  };
   struct Entry {
     StoredScene scene;
-    std::map<std::string, std::uint64_t> owners;  // And the number of the scene among those of each.
+    std::map<std::string, Ownership> owners;
   };
   struct Owned {
     std::string sha256;
@@ -65,6 +76,7 @@ class MemorySceneStore final : public SceneStore {
   absl::Status Reserve(std::uint64_t bytes);
   absl::StatusOr<std::uint64_t> Complete(const UploadName& name, PartialUpload& upload);
   Entry* Find(const std::string& sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  Ownership* FindOwnership(const std::string& owner, const std::string& sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void AddLocked(StoredScene scene) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void AddOwnerLocked(const std::string& owner, const std::string& sha256, const std::string& title)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "server/store/grants.h"
 
 namespace flatlight {
 
@@ -49,6 +51,22 @@ class SceneStore {
   // Positions of one owner's scenes are its own: they tell nothing of others.
   virtual ScenePage List(const std::optional<std::string>& owner, std::optional<std::uint64_t> before,
                          std::size_t limit) = 0;
+  // The same, of scenes that others share with one of `who` and `reader` has not uploaded; with the title that one of
+  // those who share it has read.
+  virtual ScenePage ListShared(const std::vector<Grantee>& who, const std::string& reader,
+                               std::optional<std::uint64_t> before, std::size_t limit) = 0;
+  // All who have it, in order.
+  virtual std::vector<std::string> OwnersOf(const std::string& sha256) = 0;
+
+  // Each owner shares a scene for itself, as long as it has it. NOT_FOUND if it does not; else as AddGrant and
+  // RemoveGrant.
+  virtual absl::Status Share(const std::string& owner, const std::string& sha256, const Grant& grant) = 0;
+  virtual absl::Status Unshare(const std::string& owner, const std::string& sha256, const Grantee& grantee) = 0;
+  // None, of a scene that the owner does not have.
+  virtual std::vector<Grant> GrantsOf(const std::string& owner, const std::string& sha256) = 0;
+  // Which owners share it with one who is all of `who`, and what each allows.
+  virtual std::map<std::string, Access> SharedBy(const std::string& sha256, const std::vector<Grantee>& who) = 0;
+
   // Takes it from one owner; it goes with the last one. NOT_FOUND if the owner does not have it.
   virtual absl::Status Disown(const std::string& owner, const std::string& sha256) = 0;
   // Takes it from all. NOT_FOUND.

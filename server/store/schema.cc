@@ -133,6 +133,13 @@ CREATE INDEX scene_owners_by_scene ON scene_owners(sha256);
 // A page of somebody's jobs costs by its length, however many jobs others have.
 constexpr char kJobsByOwner[] = "CREATE INDEX jobs_by_owner ON jobs(owner, number);";
 
+// An owner's shares of a scene, granted on scenes/{sha256}/owners/{owner}, go with the upload.
+constexpr char kSceneGrants[] = R"sql(
+CREATE TRIGGER scene_owners_drop_grants AFTER DELETE ON scene_owners BEGIN
+  DELETE FROM grants WHERE resource = 'scenes/' || OLD.sha256 || '/owners/' || OLD.owner;
+END;
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -143,8 +150,8 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs,   kScenes, kUsers,       kPauses,
-                                                       kGrants, kRooms,  kSceneOwners, kJobsByOwner};
+  static const std::vector<std::string> kMigrations = {kJobs,  kScenes,      kUsers,       kPauses,     kGrants,
+                                                       kRooms, kSceneOwners, kJobsByOwner, kSceneGrants};
   return kMigrations;
 }
 

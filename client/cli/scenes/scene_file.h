@@ -3,6 +3,7 @@
 #ifndef FLATLIGHT_CLIENT_CLI_SCENES_SCENE_FILE_H_
 #define FLATLIGHT_CLIENT_CLI_SCENES_SCENE_FILE_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -12,7 +13,10 @@
 
 namespace flatlight {
 
-// A scene of the server ("gallery:NAME" is scenes/NAME) or a file to upload ("-" is standard input).
+inline constexpr std::size_t kHashDigits = 64;  // Of scenes/HASH.
+
+// A scene of the server ("gallery:NAME" is scenes/NAME, and scenes/HASH an upload) or a file to upload ("-" is standard
+// input).
 struct SceneArgument {
   std::string label;  // For messages: as written, but "standard input" for "-".
   std::string name;   // "scenes/NAME"; empty for a file.

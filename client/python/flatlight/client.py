@@ -11,7 +11,7 @@ from flatlight.job import Job
 from flatlight.settings import enum_value, settings as make_settings
 from flatlight.tls import Tls
 from flatlight.v1 import (render_service_pb2, render_service_pb2_grpc, scene_service_pb2, scene_service_pb2_grpc,
-                          server_service_pb2, server_service_pb2_grpc)
+                          server_service_pb2, server_service_pb2_grpc, sharing_pb2)
 
 _ADDRESS = re.compile(r"unix:.+|(\[[0-9a-fA-F:.]+\]|[^:/\[\]]+):[0-9]{1,5}")
 _LOCAL = re.compile(r"unix:|localhost:|127\.|\[::1\]")
@@ -101,15 +101,31 @@ class Client:
             if not request.page_token:
                 return
 
-    def scenes(self):
-        """The gallery, then what was uploaded: flatlight.v1.SceneInfo each."""
-        request = scene_service_pb2.ListScenesRequest(page_size=1000)
+    def scenes(self, *, shared=False, own=False):
+        """The gallery, then the caller's uploads (everybody's, for graders and above): flatlight.v1.SceneInfo each. With
+        `own`, the caller's uploads alone; with `shared`, those of others that are shared with the caller."""
+        request = scene_service_pb2.ListScenesRequest(page_size=1000, shared=shared, own=own)
         while True:
             page = self.call(self.scene_service.ListScenes, request)
             yield from page.scenes
             request.page_token = page.next_page_token
             if not request.page_token:
                 return
+
+    def share_scene(self, name, grantee, *, control=False):
+        """Lets `grantee` ("user:NAME", "group:NAME" or "course") read and render an upload of one's own, "scenes/HASH";
+        with `control`, delete it too. The flatlight.v1.SceneInfo, with all its shares."""
+        share = sharing_pb2.Share(grantee=grantee, access=sharing_pb2.Share.CONTROL if control else sharing_pb2.Share.READ)
+        return self.call(self.scene_service.ShareScene, scene_service_pb2.ShareSceneRequest(name=name, share=share))
+
+    def unshare_scene(self, name, grantee):
+        """Ends that. Raises BadRequest if it is not shared so."""
+        request = scene_service_pb2.UnshareSceneRequest(name=name, grantee=grantee)
+        return self.call(self.scene_service.UnshareScene, request)
+
+    def delete_scene(self, name):
+        """Takes an upload, "scenes/HASH", from oneself; jobs that were made from it keep it."""
+        self.call(self.scene_service.DeleteScene, scene_service_pb2.DeleteSceneRequest(name=name))
 
     def validate(self, scene, *, probes=()):
         """Every mistake of a scene, as (path, message); none: it is good."""

@@ -67,6 +67,33 @@ class UsersTest(CliCase):
                 with open(self.path("data/" + name), "rb") as file:
                     self.assertNotIn(again.encode(), file.read(), name)
 
+    def test_scenes_are_shared(self):
+        tokens = self.tokens("ada") | self.tokens("bob", "--group", "lab-1")
+        ada, bob = tokens["ada"], tokens["bob"]
+        with Daemon(FLATLIGHTD, arguments=("--data", self.path("data"))) as daemon:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            self.write("mine.json", self.run_cli("scenes", "penumbra", env=self.environment | {"FLATLIGHT_TOKEN": ada}).stdout)
+            self.assertEqual(self.as_user(ada, "scenes", "--mine").stdout, "you have uploaded no scenes\n")
+            self.as_user(ada, "validate", "mine.json")
+            digest = self.as_user(ada, "scenes", "--mine").stdout.split()[0]
+            self.assertEqual(len(digest), 64)
+            name = "scenes/" + digest
+            self.as_user(bob, "validate", name, status=2)
+            self.assertEqual(self.as_user(bob, "scenes", "--shared").stdout, "no scenes are shared with you\n")
+            self.assertIn("no uploaded scene begins",
+                          self.as_user(bob, "share", name[:12], "--with", "course", status=2).stderr)
+            shared = self.as_user(ada, "share", name[:12], "--with", "group:lab-1").stdout
+            self.assertEqual(shared, f"{name} shared with group:lab-1 (read)\n")
+            self.assertIn("good scene", self.as_user(bob, "validate", name).stdout)
+            self.assertRegex(self.as_user(bob, "scenes", "--shared").stdout, digest + ".*ada")
+            self.assertIn("not yours", self.as_user(bob, "scenes", digest[:5], "--delete", status=4).stderr)
+            self.as_user(ada, "unshare", name, "--with", "group:lab-1", "--quiet")
+            self.as_user(bob, "validate", name, status=2)
+            self.assertEqual(self.as_user(ada, "scenes", digest[:5], "--delete").stdout, f"{name} deleted\n")
+            self.assertEqual(self.as_user(ada, "scenes", "--mine").stdout, "you have uploaded no scenes\n")
+            self.assertIn("--delete", self.as_user(ada, "scenes", "--delete", status=2).stderr)
+            self.assertIn("excludes", self.as_user(ada, "scenes", "--mine", "--shared", status=2).stderr)
+
     def test_jobs_are_shared(self):
         tokens = self.tokens("ada") | self.tokens("bob", "--group", "lab-1") | self.tokens("cyd")
         ada, bob, cyd = tokens["ada"], tokens["bob"], tokens["cyd"]

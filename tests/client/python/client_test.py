@@ -166,6 +166,7 @@ class ClientTest(PythonCase):
         with self.assertRaises(flatlight.BadRequest):
             again.unshare("course")
         self.assertEqual(list(client.jobs(shared=True)), [], "they are all the caller's own")
+        self.assertEqual([each.name for each in client.jobs(own=True)], [each.name for each in client.jobs()])
         job.delete()
         self.assertEqual(list(client.jobs()), [])
 
