@@ -128,10 +128,9 @@ bool View::OpenAround(const Receiver& receiver, const Corner* corners, int count
   int first = 0;
   while (first < count && (corners[first].above || !corners[(first + step) % count].above)) ++first;
   if (first == count) return false;
-  low_ = {-receiver.tangent.x, -receiver.tangent.y, ViewLimit::kHorizon};
+  ViewLimit low{-receiver.tangent.x, -receiver.tangent.y, ViewLimit::kHorizon};
   const ViewLimit end{receiver.tangent.x, receiver.tangent.y, ViewLimit::kHorizon};
   stretch_count_ = beam_count_ = 0;
-  ViewLimit low = low_;
   for (int from = first, opened = 0; opened < count; ++opened) {
     const int to = (from + step) % count;
     const ViewLimit& high = corners[to].above ? corners[to].to : end;
@@ -148,7 +147,7 @@ void View::Append(const ViewLimit& low, const ViewLimit& high, Gate gate) {
   if (stretch_count_ > 0) stretches_[stretch_count_ - 1].next = static_cast<std::uint32_t>(stretch_count_);
   if (gate < Triangulation::kWall)
     beams_[beam_count_++] = {low, high, gate, static_cast<std::uint32_t>(stretch_count_)};
-  stretches_[stretch_count_++] = {high, gate, kNoStretch};
+  stretches_[stretch_count_++] = {high.vertex, gate, kNoStretch};
 }
 
 void View::MakeRoom() {
@@ -190,8 +189,7 @@ bool View::Follow(Point2 position) {
         // The upper part is cut off.
         const ViewLimit at{x, y, apex};
         const auto added = static_cast<std::uint32_t>(stretch_count++);
-        stretches[added] = {beam.high, to_high, stretches[beam.stretch].next};
-        stretches[beam.stretch].next = added;
+        stretches[added] = {beam.high.vertex, to_high, std::exchange(stretches[beam.stretch].next, added)};
         if (to_high == Triangulation::kShared) return false;
         if (to_high < Triangulation::kWall) beams[beam_count++] = {at, beam.high, to_high, added};
         beam.high = at;
@@ -199,7 +197,7 @@ bool View::Follow(Point2 position) {
       beam.gate = gate;
       if (gate < Triangulation::kWall) continue;
       if (gate == Triangulation::kShared) return false;
-      stretches[beam.stretch].high = beam.high, stretches[beam.stretch].gate = gate;
+      stretches[beam.stretch].high = beam.high.vertex, stretches[beam.stretch].gate = gate;
       beam = beams[--beam_count];
     }
     beam_count_ = beam_count, stretch_count_ = stretch_count;

@@ -31,14 +31,15 @@ class View {
   // Both must outlive it.
   View(const Scene& scene, const Triangulation& triangulation);
 
-  // Calls visit(limit, gate) for all walls that are seen, in the order of theta (see Edge): from the limit on, up to
-  // the next call's, `gate` is seen: a wall, kNothing, or, in the last call, kHorizon. False, and nothing is visited,
-  // if a direction or a place cannot be decided to the accuracy of the coordinates, or if many slits let so many beams
-  // through the same triangles that another way is faster.
+  // Calls visit(vertex, gate) for all walls that are seen, in the order of theta (see Edge): from the direction to the
+  // vertex on, up to the next call's, `gate` is seen: a wall, or kNothing. The first call has the horizon for a vertex,
+  // as has the last, of which the gate is kHorizon. False, and nothing is visited, if a direction or a place cannot be
+  // decided to the accuracy of the coordinates, or if many slits let so many beams through the same triangles that
+  // another way is faster.
   template <typename Visit>
   bool Walk(const Receiver& receiver, const Visit& visit) {
     if (!Find(receiver)) return false;
-    ViewLimit low = low_;
+    std::uint32_t low = ViewLimit::kHorizon;
     for (std::uint32_t i = 0; i != kNoStretch; i = stretches_[i].next) {
       visit(low, stretches_[i].gate);
       low = stretches_[i].high;
@@ -52,9 +53,9 @@ class View {
 
  private:
   static constexpr std::uint32_t kNoStretch = 0xffffffff;
-  // What is seen from the stretch before up to `high`: behind the gate, in the end a wall.
+  // What is seen from the stretch before up to a vertex: behind the gate, in the end a wall.
   struct Stretch {
-    ViewLimit high;
+    std::uint32_t high;
     Gate gate;
     std::uint32_t next;  // The stretch that begins there; those that follow the first make up all that is seen.
   };
@@ -101,7 +102,6 @@ class View {
   const double doubt_;  // Doubt(a, b) is never more.
   const double most_steps_;
   bool clockwise_ = false;
-  ViewLimit low_;  // Of the first stretch.
   // With room for more than there are.
   std::vector<Stretch> stretches_;
   std::vector<Beam> beams_;
