@@ -322,7 +322,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   int port = 0;
   builder.AddListeningPort(address->ToString(address->port), parts->NewCredentials(), &port);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-  SetConnectionLimits(builder, options.limits, options.keepalive);
+  SetConnectionLimits(builder, options.limits, options.keepalive, options.connection_memory_bytes);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(parts->telemetry.MakeFactory());
   builder.experimental().SetInterceptorCreators(std::move(interceptors));

@@ -28,6 +28,7 @@ struct ServerOptions {
   std::string log;              // A file for a line about each call, or "-"; empty: none.
   std::chrono::milliseconds checkpoint_interval{3000};  // Of a job, at least. With `data`.
   std::chrono::milliseconds keepalive{60'000};          // See SetConnectionLimits.
+  std::size_t connection_memory_bytes = 512u << 20;     // Of gRPC's buffers; a thousand watchers take an eighth.
   std::chrono::milliseconds heartbeat{10'000};          // Between messages of a watch on which nothing happens.
   // Tests give their own; else StartRendering, on indexes that jobs share (JobSpec::sharers).
   std::function<std::unique_ptr<Rendering>(std::shared_ptr<const Scene>, const Plan&)> start_rendering;
