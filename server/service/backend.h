@@ -14,6 +14,7 @@
 #include "server/service/guard.h"
 #include "server/service/job_access.h"
 #include "server/service/limits.h"
+#include "server/service/page_tokens.h"
 #include "server/service/scene_cache.h"
 #include "server/store/job_store.h"
 #include "server/store/scene_store.h"
@@ -38,6 +39,7 @@ struct Backend {
   CallTelemetry& telemetry;
   std::atomic<bool> draining = false;
   CallsUnderWay calls = {};
+  const PageTokens page_tokens = {};
 };
 
 }  // namespace flatlight

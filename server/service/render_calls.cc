@@ -245,26 +245,32 @@ absl::StatusOr<v1::Job> GetJob(Backend& backend, const Caller& caller, const v1:
 
 absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const Caller& caller,
                                               const v1::ListJobsRequest& request) {
-  const auto page = ParsePage(request.page_size(), request.page_token());
+  if (request.shared() && request.own()) return MakeFieldError("own", "true; allowed: false, with shared");
+  std::optional<std::string> owner;
+  if (caller.role < Role::kGrader || request.own()) owner = caller.name;
+  const std::string list = (request.shared() ? "jobs shared with "
+                            : owner          ? "jobs of "
+                                             : "all jobs, for ") +
+                           caller.name;
+  const auto page = ParsePage(backend.page_tokens, list, request.page_size(), request.page_token());
   if (!page.ok()) return page.status();
   const auto listed = request.shared() ? backend.jobs.ListShared(Grantee::Of(caller.name, caller.groups), caller.name,
                                                                  page->position, page->size)
-                                       : backend.jobs.List(page->position, page->size);
+                                       : backend.jobs.List(owner, page->position, page->size);
   if (!listed.ok()) return listed.status();
   const JobPage& jobs = *listed;
   v1::ListJobsResponse response;
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < jobs.jobs.size(); ++i) {
-    if (!request.shared() && RightByRole(caller, *jobs.jobs[i].spec) == JobRight::kNone) continue;
     v1::Job job = WholeJob(jobs.jobs[i]);
     bytes += job.ByteSizeLong();
     if (i > 0 && bytes > kMaxPageBytes) {
-      response.set_next_page_token(PageToken(jobs.positions[i - 1]));
+      response.set_next_page_token(backend.page_tokens.Seal(list, jobs.positions[i - 1]));
       return response;
     }
     *response.add_jobs() = std::move(job);
   }
-  if (jobs.next_before) response.set_next_page_token(PageToken(*jobs.next_before));
+  if (jobs.next_before) response.set_next_page_token(backend.page_tokens.Seal(list, *jobs.next_before));
   return response;
 }
 

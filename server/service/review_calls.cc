@@ -78,15 +78,16 @@ absl::StatusOr<v1::Room> ReviewCalls::Get(const Caller& caller, const v1::GetRoo
 }
 
 absl::StatusOr<v1::ListRoomsResponse> ReviewCalls::List(const Caller& caller, const v1::ListRoomsRequest& request) {
-  const auto page = ParsePage(request.page_size(), request.page_token());
-  if (!page.ok()) return page.status();
   std::optional<RoomStore::Person> of;
   if (caller.role < Role::kInstructor) of = {caller.name, Grantee::Of(caller.name, caller.groups)};
+  const std::string list = (of ? "rooms of " : "all rooms, for ") + caller.name;
+  const auto page = ParsePage(backend_.page_tokens, list, request.page_size(), request.page_token());
+  if (!page.ok()) return page.status();
   const auto rooms = backend_.rooms.List(of, page->position, page->size);
   if (!rooms.ok()) return rooms.status();
   v1::ListRoomsResponse response;
   for (const Room& room : rooms->rooms) *response.add_rooms() = RoomToProto(room);
-  if (rooms->next_before) response.set_next_page_token(PageToken(*rooms->next_before));
+  if (rooms->next_before) response.set_next_page_token(backend_.page_tokens.Seal(list, *rooms->next_before));
   return response;
 }
 

@@ -2,6 +2,8 @@
 #include "server/service/scene_calls.h"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "core/render/plan.h"
@@ -21,7 +23,8 @@ namespace {
 // Positions of a list of scenes: the gallery's are 0, 1, ...; uploads follow, each at this plus where its page begins.
 constexpr std::uint64_t kUploads = 1'000'000;
 
-void AddGallery(std::uint64_t position, std::size_t size, v1::ListScenesResponse& response) {
+// Returns where the next page begins; nothing: no more of the gallery follows.
+std::optional<std::uint64_t> AddGallery(std::uint64_t position, std::size_t size, v1::ListScenesResponse& response) {
   const auto& gallery = Gallery();
   for (; position < gallery.size() && static_cast<std::size_t>(response.scenes_size()) < size; ++position) {
     const GalleryScene& scene = gallery[position];
@@ -32,7 +35,7 @@ void AddGallery(std::uint64_t position, std::size_t size, v1::ListScenesResponse
     info.set_gallery(true);
     info.set_bytes(static_cast<double>(scene.json.size()));
   }
-  if (position < gallery.size()) response.set_next_page_token(PageToken(position));
+  return position < gallery.size() ? std::optional(position) : std::nullopt;
 }
 
 }  // namespace
@@ -64,21 +67,26 @@ absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const Caller& ca
 
 absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const Caller& caller,
                                                   const v1::ListScenesRequest& request) {
-  const auto page = ParsePage(request.page_size(), request.page_token());
+  std::optional<std::string> owner;
+  if (caller.role < Role::kGrader) owner = caller.name;
+  const std::string list = (owner ? "scenes of " : "all scenes, for ") + caller.name;
+  const auto page = ParsePage(backend.page_tokens, list, request.page_size(), request.page_token());
   if (!page.ok()) return page.status();
   const std::uint64_t position = page->position.value_or(0);
   v1::ListScenesResponse response;
-  if (position < kUploads) AddGallery(position, page->size, response);
-  if (!response.next_page_token().empty()) return response;
-  std::optional<std::string> owner;
-  if (caller.role < Role::kGrader) owner = caller.name;
+  const auto go_on_at = [&](std::uint64_t next) {
+    response.set_next_page_token(backend.page_tokens.Seal(list, next));
+    return response;
+  };
+  if (position < kUploads) {
+    if (const auto next = AddGallery(position, page->size, response)) return go_on_at(*next);
+  }
   std::optional<std::uint64_t> before;
   if (position > kUploads) before = position - kUploads;
   const std::size_t room = page->size - static_cast<std::size_t>(response.scenes_size());
   const ScenePage uploads = backend.scenes.List(owner, before, std::max<std::size_t>(room, 1));
   if (room == 0) {
-    if (!uploads.scenes.empty()) response.set_next_page_token(PageToken(kUploads));
-    return response;
+    return uploads.scenes.empty() ? response : go_on_at(kUploads);
   }
   for (const StoredScene& scene : uploads.scenes) {
     v1::SceneInfo& info = *response.add_scenes();
@@ -86,8 +94,7 @@ absl::StatusOr<v1::ListScenesResponse> ListScenes(Backend& backend, const Caller
     info.set_title(scene.title);
     info.set_bytes(static_cast<double>(scene.bytes->size()));
   }
-  if (uploads.next_before) response.set_next_page_token(PageToken(kUploads + *uploads.next_before));
-  return response;
+  return uploads.next_before ? go_on_at(kUploads + *uploads.next_before) : response;
 }
 
 absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const Caller& caller,

@@ -126,8 +126,9 @@ absl::StatusOr<JobRecord> DurableJobStore::GetWhole(const JobId& id) {
   return job;
 }
 
-absl::StatusOr<JobPage> DurableJobStore::List(std::optional<std::uint64_t> before, std::size_t limit) {
-  return PageOf(archive_.List(before, limit));
+absl::StatusOr<JobPage> DurableJobStore::List(const std::optional<std::string>& owner,
+                                              std::optional<std::uint64_t> before, std::size_t limit) {
+  return PageOf(archive_.List(owner, before, limit));
 }
 
 absl::StatusOr<JobPage> DurableJobStore::ListShared(const std::vector<Grantee>& who, const std::string& owner,

@@ -59,7 +59,8 @@ class DurableJobStore final : public JobStore {
   absl::StatusOr<JobRecord> Get(const JobId& id) override;
   bool IsAtHand(const JobId& id) override { return memory_.Get(id).ok(); }
   absl::StatusOr<JobRecord> GetWhole(const JobId& id) override;
-  absl::StatusOr<JobPage> List(std::optional<std::uint64_t> before, std::size_t limit) override;
+  absl::StatusOr<JobPage> List(const std::optional<std::string>& owner, std::optional<std::uint64_t> before,
+                               std::size_t limit) override;
   absl::StatusOr<JobPage> ListShared(const std::vector<Grantee>& who, const std::string& owner,
                                      std::optional<std::uint64_t> before, std::size_t limit) override;
   absl::Status Delete(const JobId& id) override;

@@ -250,9 +250,12 @@ absl::StatusOr<ArchivedJob> JobArchive::Get(const JobId& id) {
   return found;
 }
 
-absl::StatusOr<JobArchive::Page> JobArchive::List(std::optional<std::uint64_t> before, std::size_t limit) {
+absl::StatusOr<JobArchive::Page> JobArchive::List(const std::optional<std::string>& owner,
+                                                  std::optional<std::uint64_t> before, std::size_t limit) {
   return ReadPage(storage_, limit, [&](Database& database) {
-    Statement jobs = database.Prepare(std::string(kColumns) + "WHERE number < ? ORDER BY number DESC LIMIT ?");
+    Statement jobs = database.Prepare(std::string(kColumns) + (owner ? "WHERE owner = ? AND " : "WHERE ") +
+                                      "number < ? ORDER BY number DESC LIMIT ?");
+    if (owner) jobs.Bind(std::string_view(*owner));
     jobs.Bind(FirstNumber(before)).Bind(static_cast<std::int64_t>(limit) + 1);
     return jobs;
   });
@@ -261,11 +264,12 @@ absl::StatusOr<JobArchive::Page> JobArchive::List(std::optional<std::uint64_t> b
 absl::StatusOr<JobArchive::Page> JobArchive::ListShared(const std::vector<Grantee>& who, const std::string& owner,
                                                         std::optional<std::uint64_t> before, std::size_t limit) {
   return ReadPage(storage_, limit, [&](Database& database) {
+    // By what is shared, which is little, and not by all jobs: hence the plus.
     Statement jobs =
-        database.Prepare(std::string(kColumns) + "WHERE number < ? AND owner != ? AND 'jobs/' || uuid IN " +
-                         ResourcesOf(who) + " ORDER BY number DESC LIMIT ?");
-    jobs.Bind(FirstNumber(before)).Bind(std::string_view(owner));
+        database.Prepare(std::string(kColumns) + "WHERE uuid IN (SELECT substr(resource, 6) FROM " + ResourcesOf(who) +
+                         ") AND +number < ? AND owner != ? ORDER BY number DESC LIMIT ?");
     BindGrantees(who, jobs);
+    jobs.Bind(FirstNumber(before)).Bind(std::string_view(owner));
     jobs.Bind(static_cast<std::int64_t>(limit) + 1);
     return jobs;
   });

@@ -64,7 +64,8 @@ class JobArchive {
     std::vector<std::uint64_t> positions;
     std::optional<std::uint64_t> next_before;
   };
-  absl::StatusOr<Page> List(std::optional<std::uint64_t> before, std::size_t limit);
+  absl::StatusOr<Page> List(const std::optional<std::string>& owner, std::optional<std::uint64_t> before,
+                            std::size_t limit);
   absl::StatusOr<Page> ListShared(const std::vector<Grantee>& who, const std::string& owner,
                                   std::optional<std::uint64_t> before, std::size_t limit);
   absl::StatusOr<std::vector<ArchivedJob>> Unfinished();  // Oldest first.

@@ -61,8 +61,10 @@ class JobStore {
   virtual absl::StatusOr<JobRecord> GetWhole(const JobId& id) { return Get(id); }
   // Whether Get answers at once: without a look at the disk, which may take a while.
   virtual bool IsAtHand(const JobId& /*id*/) { return true; }
-  // At most `limit` jobs, from the newest one, or from the newest one older than `before`. Fields may be left out.
-  virtual absl::StatusOr<JobPage> List(std::optional<std::uint64_t> before, std::size_t limit) = 0;
+  // At most `limit` jobs of `owner`, or of all, from the newest one, or from the newest one older than `before`. As
+  // many as that if there are so many. Fields may be left out.
+  virtual absl::StatusOr<JobPage> List(const std::optional<std::string>& owner, std::optional<std::uint64_t> before,
+                                       std::size_t limit) = 0;
   // The same, of jobs that are shared with one of `who` and are not `owner`'s.
   virtual absl::StatusOr<JobPage> ListShared(const std::vector<Grantee>& who, const std::string& owner,
                                              std::optional<std::uint64_t> before, std::size_t limit) = 0;

@@ -158,9 +158,10 @@ absl::StatusOr<JobRecord> MemoryJobStore::Get(const JobId& id) {
   return jobs_.at(number->second).job;
 }
 
-absl::StatusOr<JobPage> MemoryJobStore::List(std::optional<std::uint64_t> before, std::size_t limit) {
+absl::StatusOr<JobPage> MemoryJobStore::List(const std::optional<std::string>& owner,
+                                             std::optional<std::uint64_t> before, std::size_t limit) {
   const std::lock_guard lock(mutex_);
-  return ListIf(before, limit, [](const Entry&) { return true; });
+  return ListIf(before, limit, [&](const Entry& entry) { return !owner || entry.job.spec->owner == *owner; });
 }
 
 absl::StatusOr<JobPage> MemoryJobStore::ListShared(const std::vector<Grantee>& who, const std::string& owner,

@@ -33,7 +33,8 @@ class MemoryJobStore final : public JobStore {
                                    const std::optional<RequestKey>& key) override;
   absl::Status Update(const JobRecord& job) override;
   absl::StatusOr<JobRecord> Get(const JobId& id) override;
-  absl::StatusOr<JobPage> List(std::optional<std::uint64_t> before, std::size_t limit) override;
+  absl::StatusOr<JobPage> List(const std::optional<std::string>& owner, std::optional<std::uint64_t> before,
+                               std::size_t limit) override;
   absl::StatusOr<JobPage> ListShared(const std::vector<Grantee>& who, const std::string& owner,
                                      std::optional<std::uint64_t> before, std::size_t limit) override;
   absl::Status Delete(const JobId& id) override;

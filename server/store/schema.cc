@@ -130,6 +130,9 @@ CREATE TABLE scene_owners(
 CREATE INDEX scene_owners_by_scene ON scene_owners(sha256);
 )sql";
 
+// A page of somebody's jobs costs by its length, however many jobs others have.
+constexpr char kJobsByOwner[] = "CREATE INDEX jobs_by_owner ON jobs(owner, number);";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -140,7 +143,8 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs, kScenes, kUsers, kPauses, kGrants, kRooms, kSceneOwners};
+  static const std::vector<std::string> kMigrations = {kJobs,   kScenes, kUsers,       kPauses,
+                                                       kGrants, kRooms,  kSceneOwners, kJobsByOwner};
   return kMigrations;
 }
 

@@ -116,7 +116,10 @@ CommandResult Watch(const CommandLine& line, Interruption& interruption) {
 CommandResult Jobs(const CommandLine& line, Interruption& interruption) {
   const auto session = OpenServer(line, interruption);
   if (!session.ok()) return session.status();
-  auto jobs = ListJobs((*session)->connection(), line.shared ? WhoseJobs::kShared : WhoseJobs::kOwn);
+  const WhoseJobs whose = line.shared                       ? WhoseJobs::kShared
+                          : line.mine || line.prune_seconds ? WhoseJobs::kOwn
+                                                            : WhoseJobs::kAll;
+  auto jobs = ListJobs((*session)->connection(), whose);
   if (!jobs.ok()) return jobs.status();
   if (line.prune_seconds) {
     absl::Status pruned = Prune((*session)->connection(), *line.prune_seconds, *jobs);
@@ -127,7 +130,7 @@ CommandResult Jobs(const CommandLine& line, Interruption& interruption) {
     all.mutable_jobs()->Add(jobs->begin(), jobs->end());
     return Answer(ToJson(all));
   }
-  return Answer(JobListText(*jobs, SecondsNow(), line.shared ? WhoseJobs::kShared : WhoseJobs::kOwn));
+  return Answer(JobListText(*jobs, SecondsNow(), whose));
 }
 
 CommandResult Show(const CommandLine& line, Interruption& interruption) {

@@ -76,6 +76,7 @@ absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection, WhoseJobs 
   v1::ListJobsRequest request;
   request.set_page_size(1000);
   request.set_shared(whose == WhoseJobs::kShared);
+  request.set_own(whose == WhoseJobs::kOwn);
   do {
     v1::ListJobsResponse response;
     const absl::Status status =
@@ -90,7 +91,7 @@ absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection, WhoseJobs 
 absl::StatusOr<std::string> ResolveJobName(Connection& connection, const std::string& text) {
   std::set<std::string> names;
   if (!IsWholeJobName(text) && IsUuidBeginning(WithoutPrefix(kJobNames, text))) {
-    for (const WhoseJobs whose : {WhoseJobs::kOwn, WhoseJobs::kShared}) {
+    for (const WhoseJobs whose : {WhoseJobs::kAll, WhoseJobs::kShared}) {
       const auto jobs = ListJobs(connection, whose);
       if (!jobs.ok()) return jobs.status();
       for (const v1::Job& job : *jobs) names.insert(job.name());

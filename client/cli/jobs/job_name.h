@@ -33,11 +33,12 @@ absl::StatusOr<std::string> MatchJobName(const std::string& text, const std::vec
 bool IsWholeJobName(const std::string& text);
 
 enum class WhoseJobs {
-  kOwn,    // Those of all, for graders and above.
+  kAll,    // The caller's own; for graders and above those of all.
+  kOwn,    // The caller's own.
   kShared  // Those of others that are shared with the caller.
 };
 // Every one that the server keeps, newest first.
-absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection, WhoseJobs whose = WhoseJobs::kOwn);
+absl::StatusOr<std::vector<v1::Job>> ListJobs(Connection& connection, WhoseJobs whose = WhoseJobs::kAll);
 
 // MatchJobName with the jobs that the caller may see, which are listed only if they are needed.
 absl::StatusOr<std::string> ResolveJobName(Connection& connection, const std::string& text);

@@ -233,9 +233,10 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   CLI::App& jobs = AddCommand(app, "jobs", "list the jobs of a server");
   AddJson(jobs, raw, "the list");
   CLI::Option& prune =
-      *jobs.add_option("--prune", raw.prune, "delete the jobs that ended longer than AGE ago: 0, 90m, 12h, 30d");
+      *jobs.add_option("--prune", raw.prune, "delete your jobs that ended longer than AGE ago: 0, 90m, 12h, 30d");
   prune.type_name("AGE");
-  jobs.add_flag("--shared", raw.line.shared, "those of others that are shared with you")->excludes(&prune);
+  CLI::Option& mine = *jobs.add_flag("--mine", raw.line.mine, "your own alone, also if you may see all");
+  jobs.add_flag("--shared", raw.line.shared, "those of others that are shared with you")->excludes(&prune, &mine);
   CLI::App& top = AddCommand(app, "top", "show what a server does: jobs, users, rates", kTopHelp);
   top.add_flag("--once", raw.line.once, "show it once, in plain text");
   AddJson(top, raw, "the activity");

@@ -32,6 +32,7 @@ struct CommandLine {
   bool once = false;                    // Of `top`.
   std::optional<double> prune_seconds;  // Of `jobs`: delete those that ended longer ago.
   bool shared = false;                  // Of `jobs`: those of others that are shared with the caller.
+  bool mine = false;                    // Of `jobs`: the caller's own alone.
   std::vector<std::string> grantees;    // Of `share` and `unshare`.
   bool control = false;                 // Of `share`.
   std::string figure;                   // Of `figure`: its name.

@@ -90,10 +90,10 @@ class Client:
         name = name if name.startswith("jobs/") else "jobs/" + name
         return Job(self, self.call(self.render_service.GetJob, render_service_pb2.GetJobRequest(name=name)))
 
-    def jobs(self, *, shared=False):
-        """The caller's own jobs (everybody's, for graders and above), the newest first; with `shared`, those of others
-        that are shared with the caller."""
-        request = render_service_pb2.ListJobsRequest(page_size=1000, shared=shared)
+    def jobs(self, *, shared=False, own=False):
+        """The caller's own jobs (everybody's, for graders and above, but with `own`), the newest first; with `shared`,
+        those of others that are shared with the caller."""
+        request = render_service_pb2.ListJobsRequest(page_size=1000, shared=shared, own=own)
         while True:
             page = self.call(self.render_service.ListJobs, request)
             yield from (Job(self, job) for job in page.jobs)

@@ -56,6 +56,9 @@ class UsersTest(CliCase):
             self.user("revoke", "ada")
             self.assertIn("revoked", self.as_user(tokens["ada"], "jobs", status=4).stderr)
             self.as_user(tokens["ina"], "cancel", job)
+            self.assertIn(job[5:], self.as_user(tokens["ina"], "jobs").stdout)
+            self.assertEqual(self.as_user(tokens["ina"], "jobs", "--mine").stdout, "no jobs\n")
+            self.assertEqual(self.as_user(tokens["ina"], "jobs", "--prune", "0").stdout, "no jobs\n")
             again = self.tokens("ada")["ada"]
             self.assertIn(job[5:], self.as_user(again, "jobs").stdout)
         self.assertIn("cannot reach the server", self.run_cli("health", status=3).stderr)

@@ -55,15 +55,33 @@ TEST_F(MemoryJobStoreTest, ForgetsWhatIsDeleted) {
 TEST_F(MemoryJobStoreTest, ListsInPagesNewestFirst) {
   const JobRecord jobs[] = {NewJob(), NewJob(), NewJob()};
   for (const JobRecord& job : jobs) ASSERT_THAT(store_.Insert(job, {}, std::nullopt), IsOk());
-  const JobPage first = *store_.List(std::nullopt, 2);
+  const JobPage first = *store_.List(std::nullopt, std::nullopt, 2);
   ASSERT_EQ(first.jobs.size(), 2u);
   EXPECT_EQ(first.jobs[0].spec->id, jobs[2].spec->id);
   EXPECT_EQ(first.jobs[1].spec->id, jobs[1].spec->id);
   ASSERT_TRUE(first.next_before);
-  const JobPage second = *store_.List(first.next_before, 2);
+  const JobPage second = *store_.List(std::nullopt, first.next_before, 2);
   ASSERT_EQ(second.jobs.size(), 1u);
   EXPECT_EQ(second.jobs[0].spec->id, jobs[0].spec->id);
   EXPECT_FALSE(second.next_before);
+}
+
+TEST_F(MemoryJobStoreTest, ListsTheJobsOfOneOwner) {
+  JobRecord jobs[] = {NewJob(), NewJob(), NewJob()};
+  for (const int ada : {0, 2}) {
+    auto spec = std::make_shared<JobSpec>(*jobs[ada].spec);
+    spec->owner = "ada";
+    jobs[ada].spec = spec;
+  }
+  for (const JobRecord& job : jobs) ASSERT_THAT(store_.Insert(job, {}, std::nullopt), IsOk());
+  const JobPage first = *store_.List("ada", std::nullopt, 1);
+  ASSERT_EQ(first.jobs.size(), 1u);
+  EXPECT_EQ(first.jobs[0].spec->id, jobs[2].spec->id);
+  const JobPage second = *store_.List("ada", first.next_before, 1);
+  ASSERT_EQ(second.jobs.size(), 1u);
+  EXPECT_EQ(second.jobs[0].spec->id, jobs[0].spec->id);
+  EXPECT_FALSE(second.next_before);
+  EXPECT_TRUE(store_.List("bob", std::nullopt, 9)->jobs.empty());
 }
 
 TEST_F(MemoryJobStoreTest, SharesJobsWithOthers) {
