@@ -28,6 +28,23 @@ absl::StatusOr<Caller> Guard::Authorize(const grpc::ServerContextBase& context, 
   return caller;
 }
 
+absl::Status Guard::Recheck(const Caller& caller) const {
+  if (caller.token_sha256.empty()) {
+    if (caller.name != kAnonymous) return absl::OkStatus();
+    const auto has_users = HasUsers();
+    if (!has_users.ok()) return has_users.status();
+    if (!*has_users) return absl::OkStatus();
+    return Refuse("this server has users now, and wants the metadata authorization: Bearer TOKEN");
+  }
+  const auto user = users_->FindByTokenHash(caller.token_sha256);
+  if (!user.ok()) return user.status();
+  if (user->role == caller.role && user->groups == caller.groups) return absl::OkStatus();
+  return MakeError(absl::StatusCode::kPermissionDenied, "RIGHTS_CHANGED",
+                   "what " + caller.name + " may do has changed; call again");
+}
+
+std::int64_t Guard::UsersVersion() const { return users_ == nullptr ? 0 : users_->Version(); }
+
 absl::StatusOr<bool> Guard::KnowsEverybody() const {
   if (!token_hash_.empty()) return true;
   return HasUsers();
@@ -57,7 +74,7 @@ absl::StatusOr<Caller> Guard::Authenticate(const grpc::ServerContextBase& contex
   if (!*has_users) return Refuse("the token is not this server's");
   auto user = users_->FindByTokenHash(hash);
   if (!user.ok()) return user.status();
-  return Caller{std::move(user->name), user->role, std::move(user->groups)};
+  return Caller{std::move(user->name), user->role, std::move(user->groups), hash};
 }
 
 }  // namespace flatlight

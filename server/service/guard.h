@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_SERVER_SERVICE_GUARD_H_
 #define FLATLIGHT_SERVER_SERVICE_GUARD_H_
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -31,6 +32,12 @@ class Guard {
 
   // UNAUTHENTICATED with BAD_TOKEN or TOKEN_INVALID, PERMISSION_DENIED with ROLE_TOO_LOW. `request`: see PolicyRow.
   absl::StatusOr<Caller> Authorize(const grpc::ServerContextBase& context, std::string_view request) const;
+
+  // Of a call that goes on: whether its caller would still be known. As Authorize; PERMISSION_DENIED for who is not
+  // the same any more.
+  absl::Status Recheck(const Caller& caller) const;
+  // Changes whenever Recheck may have another answer (and when it has not: with any change of the users' database).
+  std::int64_t UsersVersion() const;
 
  private:
   absl::StatusOr<Caller> Authenticate(const grpc::ServerContextBase& context) const;

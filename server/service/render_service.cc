@@ -131,8 +131,10 @@ absl::StatusOr<std::shared_ptr<JobWatch>> RenderService::StartWatch(const Contex
   const double seconds = std::min(1 / rate, 1e6);
   const auto interval = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
   Watch::Hooks hooks;
+  hooks.is_known = [this, caller = *caller] { return backend_.guard.Recheck(caller); };
   if (request.cancel_on_disconnect()) {
     const auto may_cancel = [this, caller = *caller, id = *id] {
+      if (absl::Status is_known = backend_.guard.Recheck(caller); !is_known.ok()) return is_known;
       return backend_.access.CheckRight(caller, JobRight::kControl, id);
     };
     if (absl::Status allowed = may_cancel(); !allowed.ok()) return allowed;

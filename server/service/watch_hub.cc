@@ -134,15 +134,36 @@ std::vector<std::shared_ptr<Watch>> WatchHub::TakeDue() {
   return due;
 }
 
+void WatchHub::MaybeLookAtUsers(std::unique_lock<std::mutex>& lock) {
+  if (!options_.users_version || count_ == 0) return;
+  const Time now = std::chrono::steady_clock::now();
+  if (now < next_look_) return;
+  next_look_ = now + options_.users_interval;
+  lock.unlock();
+  const std::int64_t version = options_.users_version();
+  lock.lock();
+  if (users_version_ == version) return;
+  users_version_ = version;
+  for (const auto& [subject, watched] : watched_) {
+    for (const auto& watch : watched.watches) {
+      watch->NoteUsersChange();
+      soon_.push_back(watch);
+    }
+  }
+}
+
 void WatchHub::Work() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
+    MaybeLookAtUsers(lock);
     std::vector<std::shared_ptr<Watch>> due = TakeDue();
     if (due.empty()) {
-      if (timetable_.empty()) {
+      Time next = Time::max();
+      if (!timetable_.empty()) next = timetable_.begin()->first;
+      if (count_ > 0 && options_.users_version) next = std::min(next, next_look_);
+      if (next == Time::max()) {
         wake_.wait(lock);
       } else {
-        const Time next = timetable_.begin()->first;  // A copy: the entry may go while this waits.
         wake_.wait_until(lock, next);
       }
       continue;

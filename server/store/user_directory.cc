@@ -24,6 +24,11 @@ absl::Status UserDirectory::ForgetWhatChanged() {
   return absl::OkStatus();
 }
 
+std::int64_t UserDirectory::Version() {
+  const std::lock_guard lock(mutex_);
+  return ForgetWhatChanged().ok() ? version_ : --unreadable_;
+}
+
 absl::StatusOr<bool> UserDirectory::HasUsers() {
   const std::lock_guard lock(mutex_);
   if (has_users_ == true) return true;
