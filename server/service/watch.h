@@ -24,6 +24,7 @@ class Watch : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std::ena
   using Time = WatchHub::Time;
 
   struct Hooks {
+    std::string watcher = {};  // Who watches.
     // Is called at most once: when the reader goes while the server is up. May be empty.
     std::function<void()> on_disconnect = nullptr;
     // Says, at the beginning and after NoteAccessChange, with what error the watch ends. Empty: with none.
@@ -37,6 +38,8 @@ class Watch : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std::ena
   // Heeded by the next step.
   void NoteAccessChange() { access_changed_ = true; }
   void NoteUsersChange() { users_changed_ = true; }
+
+  const std::string& watcher() const { return hooks_.watcher; }
 
   void OnWriteDone(bool ok) override;
   void OnCancel() override;

@@ -60,8 +60,10 @@ class WatchHub {
   const Options& options() const { return options_; }
   JobStore& jobs() { return jobs_; }
 
-  // RESOURCE_EXHAUSTED at the limit, UNAVAILABLE while draining.
-  absl::Status Add(const std::string& subject, const std::shared_ptr<Watch>& watch);
+  // RESOURCE_EXHAUSTED at the limit of all watches, or at that of its watcher's (absent: none); UNAVAILABLE while
+  // draining.
+  absl::Status Add(const std::string& subject, const std::shared_ptr<Watch>& watch,
+                   std::optional<std::uint32_t> most_of_watcher);
   void Changed(const std::string& subject);
   // Watches that rest on what is shared ask anew whether they may go on.
   void AccessChanged(const std::string& subject);
@@ -72,6 +74,7 @@ class WatchHub {
   bool draining() const;
   // Watches that are open.
   std::size_t size() const;
+  std::size_t SizeOf(const std::string& watcher) const;
   Counts& counts() { return counts_; }
   std::shared_ptr<WatchUpdate> UpdateFor(const JobRecord& job, WatchUpdate::Known known);
   void StepSoon(const std::shared_ptr<Watch>& watch);
@@ -100,6 +103,7 @@ class WatchHub {
   bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
   bool draining_ ABSL_GUARDED_BY(mutex_) = false;
   std::size_t count_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::unordered_map<std::string, std::uint32_t> count_of_ ABSL_GUARDED_BY(mutex_);  // By watcher; none of 0.
   std::unordered_map<std::string, Watched> watched_ ABSL_GUARDED_BY(mutex_);
   std::unordered_set<std::string> changed_ ABSL_GUARDED_BY(mutex_);
   std::vector<std::shared_ptr<Watch>> soon_ ABSL_GUARDED_BY(mutex_);

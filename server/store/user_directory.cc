@@ -24,6 +24,11 @@ absl::Status UserDirectory::ForgetWhatChanged() {
   return absl::OkStatus();
 }
 
+absl::StatusOr<std::optional<Role>> UserDirectory::FindRole(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  return UserStore(*database_).FindRole(name);
+}
+
 std::int64_t UserDirectory::Version() {
   const std::lock_guard lock(mutex_);
   return ForgetWhatChanged().ok() ? version_ : --unreadable_;

@@ -27,6 +27,8 @@ class UserDirectory {
   absl::StatusOr<bool> HasUsers();
   // As UserStore::FindByTokenHash.
   absl::StatusOr<User> FindByTokenHash(const std::string& token_sha256);
+  // As UserStore::FindRole; not remembered.
+  absl::StatusOr<std::optional<Role>> FindRole(const std::string& name);
   // Another number whenever anything in the database may have been changed, and when it cannot be read.
   std::int64_t Version();
 

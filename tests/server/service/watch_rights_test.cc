@@ -47,7 +47,7 @@ class WatchRightsTest : public testing::ClassTest {
   void SetUp() override { Start(); }
   // Of `owner`, on which nothing happens.
   std::string RestingJob(const std::string& owner) {
-    const std::string job = Create(owner, kEndless).name();
+    std::string job = Create(owner, kEndless).name();
     EXPECT_TRUE(Pause(owner, job).ok());
     return job;
   }
