@@ -22,7 +22,7 @@ absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const Call
 absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const Caller& caller,
                                                         const v1::ValidateSceneRequest& request,
                                                         const Proceed& proceed);
-v1::GetCapabilitiesResponse GetCapabilities(const Backend& backend);
+v1::GetCapabilitiesResponse GetCapabilities(Backend& backend, const Caller& caller);
 
 }  // namespace flatlight
 

@@ -133,6 +133,17 @@ CREATE INDEX scene_owners_by_scene ON scene_owners(sha256);
 // A page of somebody's jobs costs by its length, however many jobs others have.
 constexpr char kJobsByOwner[] = "CREATE INDEX jobs_by_owner ON jobs(owner, number);";
 
+// What users have had: see CpuLedger. Of jobs: how much room their requests and results take; null: not measured yet.
+constexpr char kQuotas[] = R"sql(
+CREATE TABLE cpu_days(
+  user TEXT NOT NULL,
+  day INTEGER NOT NULL,  -- Of UTC, since 1970.
+  seconds REAL NOT NULL,
+  PRIMARY KEY(user, day)
+) WITHOUT ROWID;
+ALTER TABLE jobs ADD COLUMN stored_bytes INTEGER;
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -143,8 +154,8 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs,   kScenes, kUsers,       kPauses,
-                                                       kGrants, kRooms,  kSceneOwners, kJobsByOwner};
+  static const std::vector<std::string> kMigrations = {kJobs,  kScenes,      kUsers,       kPauses, kGrants,
+                                                       kRooms, kSceneOwners, kJobsByOwner, kQuotas};
   return kMigrations;
 }
 
