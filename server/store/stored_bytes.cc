@@ -26,6 +26,7 @@ absl::Status MeasureOld(Storage& storage) {
   });
   if (!listed.ok() || jobs.empty()) return listed;
   std::vector<std::uint64_t> sizes;
+  sizes.reserve(jobs.size());
   for (const Unmeasured& job : jobs) {
     sizes.push_back(storage.SizeOf(job.request) + (job.result ? storage.SizeOf(*job.result) : 0));
   }

@@ -15,7 +15,6 @@
 namespace flatlight {
 namespace {
 
-using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::IsOk;
 using testing::StatusIs;
