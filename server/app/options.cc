@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "server/store/user_store.h"
 
@@ -45,6 +46,16 @@ std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int p
   app.add_option("--metrics", options.metrics,
                  "HOST:PORT on this machine: serve metrics for Prometheus at http://HOST:PORT/metrics");
   app.add_option("--log", options.log, "a file that gets a line of JSON for each call, or - for standard error");
+  std::vector<std::string> quotas;
+  app.add_option("--quota", quotas,
+                 "what each user of a role may have, as student.jobs=50 or grader.watches=none; may repeat. Limits: " +
+                     QuotaNames())
+      ->type_name("ROLE.LIMIT=VALUE")
+      ->allow_extra_args(false)
+      ->each([&options](const std::string& text) {
+        const absl::Status set = options.quotas.Set(text);
+        if (!set.ok()) throw CLI::ValidationError("--quota", std::string(set.message()));
+      });
   app.add_flag("--exit-with-parent", options.exit_with_parent, "end when standard input ends");
   CLI::App* backup =
       app.add_subcommand("backup", "copy the folder of a server, which may be running: --data DIR BACKUP");

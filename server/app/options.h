@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "server/app/user_commands.h"
+#include "server/quota/quotas.h"
 
 namespace flatlight {
 
@@ -25,6 +26,7 @@ struct DaemonOptions {
   UserCommand user;                // Unless its action is none: do that on `data`, and serve nothing.
   std::string metrics;             // HOST:PORT for Prometheus; empty: none.
   std::string log;                 // A file of calls, or "-"; empty: none.
+  QuotaTable quotas;               // What each user may have.
   bool exit_with_parent = false;   // End when standard input does.
 };
 

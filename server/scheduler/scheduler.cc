@@ -12,8 +12,6 @@
 namespace flatlight {
 namespace {
 
-constexpr std::chrono::milliseconds kRetryLater{2000};
-
 double Seconds(Clock::Duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 }  // namespace
@@ -33,7 +31,8 @@ Scheduler::Scheduler(const SchedulerOptions& options, JobStore& store, Executor&
 Scheduler::~Scheduler() { Stop(); }
 
 absl::StatusOr<JobRecord> Scheduler::Submit(std::shared_ptr<const JobSpec> spec, std::shared_ptr<const Scene> scene,
-                                            const Submission& submission, const std::optional<RequestKey>& key) {
+                                            const Submission& submission, const std::optional<RequestKey>& key,
+                                            const Quotas& quotas) {
   auto run = std::make_shared<JobRun>(clock_);
   run->spec = std::move(spec);
   run->scene = std::move(scene);
@@ -41,8 +40,10 @@ absl::StatusOr<JobRecord> Scheduler::Submit(std::shared_ptr<const JobSpec> spec,
   {
     const std::lock_guard lock(mutex_);
     if (stopping_) return draining;
-    if (absl::Status allowed = CheckQuota(run->spec->owner); !allowed.ok()) return allowed;
-    ++jobs_of_[run->spec->owner];
+    if (absl::Status allowed = CheckQuota(run->spec->owner, quotas); !allowed.ok()) return allowed;
+    Owner& owner = owners_[run->spec->owner];
+    ++owner.jobs;
+    owner.quotas = quotas;
   }
   const std::shared_ptr<const JobState> done = StateOfDone(*run->spec);
   // Writing may take a while: without the lock.
@@ -65,14 +66,17 @@ absl::StatusOr<JobRecord> Scheduler::Submit(std::shared_ptr<const JobSpec> spec,
   return done == nullptr ? job : store_.Get(job->spec->id);
 }
 
-void Scheduler::Resubmit(const JobRecord& job, JobRun::Restore restore) {
+void Scheduler::Resubmit(const JobRecord& job, JobRun::Restore restore, const Quotas& quotas) {
   auto run = std::make_shared<JobRun>(clock_);
   run->spec = job.spec;
   run->state = *job.state;
   run->restore = std::move(restore);
   {
     const std::lock_guard lock(mutex_);
-    ++jobs_of_[run->spec->owner];
+    Owner& owner = owners_[run->spec->owner];
+    ++owner.jobs;
+    owner.quotas = quotas;
+    CheckDay(run->spec->owner);
     Enter(run, nullptr);
   }
   TellListener();
@@ -92,19 +96,6 @@ void Scheduler::Enter(const RunPtr& run, const JobState* done) {
   End(*run, JobPhase::kSucceeded);
 }
 
-void Scheduler::FreeQuota(const std::string& owner) {
-  if (const auto jobs = jobs_of_.find(owner); --jobs->second == 0) jobs_of_.erase(jobs);
-}
-
-absl::Status Scheduler::CheckQuota(const std::string& owner) const {
-  const auto jobs = jobs_of_.find(owner);
-  if (jobs == jobs_of_.end() || jobs->second < options_.max_jobs_per_user) return absl::OkStatus();
-  return MakeQuotaError("TOO_MANY_JOBS", "max_jobs_per_user",
-                        std::to_string(jobs->second) + " of your jobs have not ended; allowed: " +
-                            std::to_string(options_.max_jobs_per_user) + ". Wait for one, or cancel one",
-                        kRetryLater);
-}
-
 void Scheduler::Admit() {
   const Clock::Time now = clock_.Now();
   while (accounts_.places() < options_.max_running_jobs) {
@@ -112,7 +103,7 @@ void Scheduler::Admit() {
     const auto run =
         waiting_.Pop([&](const std::string& user, JobClass job_class) -> std::optional<Accounts::PlaceRank> {
           const Accounts::PlaceRank rank = accounts_.PlaceRankOf(user, job_class);
-          if (rank.first >= free) return std::nullopt;
+          if (rank.first >= free || IsSpent(user)) return std::nullopt;
           return rank;
         });
     if (!run) break;
@@ -141,6 +132,10 @@ void Scheduler::TellPlaces() {
   std::size_t ahead = 0;
   const auto rank = [&](const std::string& user, JobClass job_class) { return accounts_.PlaceRankOf(user, job_class); };
   for (const RunPtr& run : waiting_.InTurn(rank)) {
+    if (IsSpent(run->spec->owner)) {
+      EnterRest(*run);
+      continue;
+    }
     QueuePlace place;
     place.reason = free > 0 ? QueuePlace::Reason::kOwnJobs : QueuePlace::Reason::kServerFull;
     place.ahead = ahead++;
@@ -159,6 +154,7 @@ void Scheduler::Publish(JobRun& run) {
   // Watchers hear of a restored job when its probes are known.
   if (run.restore == nullptr || HasEnded(run.state.phase)) ++run.state.sequence;
   Store(run);
+  if (HasEnded(run.state.phase)) return;  // Its end is not theirs: a store that outlives the process would write it.
   for (const RunPtr& follower : run.followers) {
     Adopt(run.state, *follower);
     Store(*follower);

@@ -13,6 +13,7 @@
 #include <optional>
 #include <thread>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
@@ -21,6 +22,8 @@
 #include "core/execution/clock.h"
 #include "core/execution/executor.h"
 #include "core/render/rendering.h"
+#include "server/quota/cpu_ledger.h"
+#include "server/quota/quotas.h"
 #include "server/scheduler/accounts.h"
 #include "server/scheduler/admission_pace.h"
 #include "server/scheduler/fair_queue.h"
@@ -40,7 +43,6 @@ struct SchedulerOptions {
   // class hold as many places as are free: there is always one for who comes anew, and for a picture beside one's own
   // regrading (dynamic thresholds: Choudhury, Hahne 1998). Paused jobs keep theirs.
   std::size_t max_running_jobs = 200;
-  std::size_t max_jobs_per_user = 1000;                      // That have not ended.
   Clock::Duration queue_interval = std::chrono::seconds(1);  // Between what a waiting job is told of its place.
   Clock::Duration first_slice =
       std::chrono::milliseconds(5);  // Short: a picture soon, also when many jobs come at once.
@@ -50,6 +52,8 @@ struct SchedulerOptions {
   // Of one job; longer where they would cost more than a hundredth of its processor time.
   Clock::Duration checkpoint_interval = std::chrono::seconds(3);
   SchedulerEvents* events = nullptr;  // Who is told of the work; outlives the scheduler.
+  CpuLedger* ledger = nullptr;        // Of what owners have had today; outlives the scheduler. Null: nobody counts.
+  Clock::Duration day_interval = std::chrono::seconds(1);  // Between looks whether another day has begun.
 };
 
 class Scheduler {
@@ -65,12 +69,13 @@ class Scheduler {
   ~Scheduler();
 
   // Accepts a job and returns at once. The scene is let go when the job has ended. If `key` has made a job before,
-  // returns that one.
-  // RESOURCE_EXHAUSTED if the owner has too many jobs that have not ended.
+  // returns that one. `quotas` are its owner's, from now on.
+  // RESOURCE_EXHAUSTED if the owner has too many jobs that have not ended, or has used up today's processor time.
   absl::StatusOr<JobRecord> Submit(std::shared_ptr<const JobSpec> spec, std::shared_ptr<const Scene> scene,
-                                   const Submission& submission, const std::optional<RequestKey>& key);
+                                   const Submission& submission, const std::optional<RequestKey>& key,
+                                   const Quotas& quotas = {});
   // Accepts a job that the store has restored; `restore` is called when its turn comes. An error of it ends the job.
-  void Resubmit(const JobRecord& job, JobRun::Restore restore);
+  void Resubmit(const JobRecord& job, JobRun::Restore restore, const Quotas& quotas = {});
   // Stops the work and returns the ended job, after at most one shard's time. An ended job stays as it is. What is
   // being prepared (for a million curves about a second's work) is prepared to its end, for nothing, after the job has
   // ended.
@@ -84,6 +89,8 @@ class Scheduler {
   // Cancels and removes.
   absl::Status Delete(const JobId& id);
   SchedulerLoad Load();
+  // How many jobs of an owner have not ended.
+  std::size_t JobsOf(const std::string& owner);
   // Of those that have not ended, at most so many: those with a place, that wait, that rest; the oldest first.
   std::vector<JobId> Unended(std::size_t most);
   // Refuses new jobs, and waits until nothing works any more. Jobs of a durable store are left as they are, with a
@@ -93,7 +100,12 @@ class Scheduler {
  private:
   using RunPtr = std::shared_ptr<JobRun>;
 
-  absl::Status CheckQuota(const std::string& owner) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  struct Owner {
+    std::size_t jobs = 0;  // Of `runs_`, and those that are just being submitted.
+    Quotas quotas;
+  };
+
+  absl::Status CheckQuota(const std::string& owner, const Quotas& quotas) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Gives free places to those who wait. To be called after each change of places or of what waits.
   void Admit() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // `done`: what its work comes to, if that is known.
@@ -109,6 +121,18 @@ class Scheduler {
   // What another job found that did the same work to its end; null if there is none, or it is no longer at hand.
   std::shared_ptr<const JobState> StateOfDone(const JobSpec& spec) ABSL_LOCKS_EXCLUDED(mutex_);
   void FreeQuota(const std::string& owner) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Of processor time that was spent for a job: to whom it is due.
+  void Charge(const std::string& owner, double cpu_seconds) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Whether the owner has used up today's processor time: its jobs keep their places, and get no turns until tomorrow.
+  bool IsSpent(const std::string& owner) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
+    return !spent_.empty() && spent_.count(owner) > 0;
+  }
+  void CheckDay(const std::string& owner) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // In stage kReady, of a spent owner: says so, and lets go of those who wait for its values.
+  void EnterRest(JobRun& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void LeaveRest(const std::function<bool(const std::string& owner)>& whose) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // If another day has begun, all go on. Returns whether that is so.
+  bool MaybeBeginDay() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void TellPlaces() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void PrepareNext();
   void RunSlices();
@@ -146,8 +170,10 @@ class Scheduler {
   std::condition_variable ready_changed_;
   std::condition_variable run_stopped_;  // One has ended or been paused.
   bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
-  std::unordered_map<JobId, RunPtr> runs_ ABSL_GUARDED_BY(mutex_);                // Those that have not ended.
-  std::unordered_map<std::string, std::size_t> jobs_of_ ABSL_GUARDED_BY(mutex_);  // How many of `runs_`, by owner.
+  std::unordered_map<JobId, RunPtr> runs_ ABSL_GUARDED_BY(mutex_);  // Those that have not ended.
+  std::unordered_map<std::string, Owner> owners_ ABSL_GUARDED_BY(mutex_);
+  std::unordered_set<std::string> spent_ ABSL_GUARDED_BY(mutex_);  // Owners who have used up `spent_day_`.
+  std::int64_t spent_day_ ABSL_GUARDED_BY(mutex_) = 0;
   Accounts accounts_ ABSL_GUARDED_BY(mutex_);
   SharedWork shared_work_ ABSL_GUARDED_BY(mutex_){10'000};
   FairQueue<RunPtr> waiting_ ABSL_GUARDED_BY(mutex_);    // For one of max_running_jobs places.

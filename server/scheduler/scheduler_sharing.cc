@@ -10,6 +10,8 @@ namespace flatlight {
 void Scheduler::FollowOrWait(const RunPtr& run) {
   const RunPtr leader = stopping_ ? nullptr : shared_work_.LeaderFor(run);
   if (leader == nullptr) {
+    // Nobody is to wait for tomorrow because of another one.
+    if (IsSpent(run->spec->owner)) shared_work_.Forget(*run);
     waiting_.Push(run->Entry(), run);
     return Admit();
   }

@@ -96,7 +96,7 @@ void Scheduler::PrepareNext() {
   const double cpu_seconds = static_cast<double>(ThreadCpuNanoseconds() - cpu_start) * 1e-9;
   {
     const std::lock_guard lock(mutex_);
-    accounts_.Charge(run->spec->owner, cpu_seconds);
+    Charge(run->spec->owner, cpu_seconds);
     if (run->stage == JobRun::Stage::kEnded) return;
     if (LeavesJobs()) return Suspend(*run);
     run->state.cpu_seconds += cpu_seconds;
@@ -158,6 +158,7 @@ void Scheduler::Requeue(const RunPtr& run) {
     urgent_.push_back(run);
   } else if (run->state.phase != JobPhase::kPaused) {
     ready_.Push(run->Turn(), run);
+    if (IsSpent(run->spec->owner)) EnterRest(*run);
   }
   ready_changed_.notify_one();
 }
@@ -168,17 +169,29 @@ Scheduler::RunPtr Scheduler::NextReady() {
     urgent_.pop_front();
     return run;
   }
-  return ready_.Pop([&](const std::string& user, JobClass) { return std::optional(accounts_.RankOf(user)); })
+  return ready_
+      .Pop([&](const std::string& user, JobClass) {
+        return IsSpent(user) ? std::nullopt : std::optional(accounts_.RankOf(user));
+      })
       .value_or(nullptr);
 }
 
 void Scheduler::RunSlices() {
   std::unique_lock lock(mutex_);
   while (true) {
+    if (MaybeBeginDay()) {
+      lock.unlock();
+      TellListener();
+      lock.lock();
+    }
     RunPtr run = NextReady();
     if (run == nullptr) {
       if (stopping_ && runs_.empty()) return;
-      ready_changed_.wait(lock);
+      if (spent_.empty()) {
+        ready_changed_.wait(lock);
+      } else {
+        ready_changed_.wait_for(lock, options_.day_interval);
+      }
       continue;
     }
     run->stage = JobRun::Stage::kSlicing;
@@ -243,7 +256,7 @@ void Scheduler::RunSlice(JobRun& run) {
 
   std::unique_ptr<Rendering> finished;  // Destroyed without the lock.
   const std::lock_guard lock(mutex_);
-  accounts_.Charge(run.spec->owner, cpu_seconds);
+  Charge(run.spec->owner, cpu_seconds);
   if (options_.events != nullptr) {
     options_.events->Worked(*run.spec, std::max(0.0, next.progress.rays - run.rays_told), cpu_seconds);
     run.rays_told = next.progress.rays;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/execution/executor.h"
+#include "server/quota/cpu_ledger.h"
 #include "server/review/room_store.h"
 #include "server/scheduler/scheduler.h"
 #include "server/scheduler/task_queue.h"
@@ -16,6 +17,7 @@
 #include "server/service/limits.h"
 #include "server/service/page_tokens.h"
 #include "server/service/scene_cache.h"
+#include "server/service/watch_hub.h"
 #include "server/store/job_store.h"
 #include "server/store/scene_store.h"
 
@@ -33,6 +35,8 @@ struct Backend {
   const JobAccess access;
   SceneCache& built_scenes;
   Scheduler& scheduler;
+  CpuLedger& ledger;
+  WatchHub& hub;
   // For work that takes longer than an event thread may: requests of ordinary size, and those that may take seconds.
   TaskQueue& quick;
   TaskQueue& slow;

@@ -6,7 +6,6 @@
 namespace flatlight {
 namespace {
 
-constexpr std::size_t kMemoryBytes = 512u << 20;  // Of gRPC's buffers; a thousand watchers take an eighth.
 constexpr int kMaxMetadataBytes = 16 << 10;
 constexpr int kMaxStreams = 1000;  // Of one connection.
 // Of answers to a ping, in times between pings: gRPC's clients give none while nothing is read from a stream, and a
@@ -15,9 +14,10 @@ constexpr int kPatience = 5;
 
 }  // namespace
 
-void SetConnectionLimits(grpc::ServerBuilder& builder, const Limits& limits, std::chrono::milliseconds keepalive) {
+void SetConnectionLimits(grpc::ServerBuilder& builder, const Limits& limits, std::chrono::milliseconds keepalive,
+                         std::size_t memory_bytes) {
   builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_message_bytes));
-  builder.SetResourceQuota(grpc::ResourceQuota("flatlightd").Resize(kMemoryBytes));
+  builder.SetResourceQuota(grpc::ResourceQuota("flatlightd").Resize(memory_bytes));
   builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, kMaxMetadataBytes);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaxStreams);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, static_cast<int>(keepalive.count()));

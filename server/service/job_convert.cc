@@ -48,6 +48,8 @@ v1::QueuePlace::Reason ReasonToProto(QueuePlace::Reason reason) {
       return v1::QueuePlace::SERVER_FULL;
     case QueuePlace::Reason::kOwnJobs:
       return v1::QueuePlace::OWN_JOBS;
+    case QueuePlace::Reason::kDayUsedUp:
+      return v1::QueuePlace::DAY_USED_UP;
   }
   return v1::QueuePlace::REASON_UNSPECIFIED;
 }

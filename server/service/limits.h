@@ -16,7 +16,6 @@ struct Limits {
   std::uint32_t max_pixels = 2u << 20;  // A picture of all channels takes 200 bytes a pixel while it is rendered.
   std::uint32_t max_running_jobs = 200;
   std::uint32_t max_jobs = 10'000;
-  std::uint32_t max_jobs_per_user = 1000;  // That have not ended.
   std::uint32_t max_watches = 2000;
 };
 

@@ -18,6 +18,7 @@ struct Caller {
   std::string name;
   Role role = Role::kStudent;
   std::vector<std::string> groups = {};
+  std::string token_sha256 = {};  // By which it is known; empty: kAnonymous, or the server's own.
 };
 
 // Each RPC has a request message of its own, by whose name it is found.

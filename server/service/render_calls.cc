@@ -15,6 +15,7 @@
 #include "server/service/job_convert.h"
 #include "server/service/known_records.h"
 #include "server/service/page.h"
+#include "server/service/quota_calls.h"
 #include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
 #include "server/store/error.h"
@@ -181,6 +182,11 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
       return WholeJob(*job);
     }
   }
+  const Quotas& quotas = backend.guard.QuotasOf(caller);
+  if (quotas.storage_bytes) {
+    const std::uint64_t used = StorageOf(backend, caller.name);
+    if (used >= *quotas.storage_bytes) return StorageUsedUp(used, *quotas.storage_bytes, 0);
+  }
   // Scenes may be large: a copy only where something is added.
   absl::StatusOr<v1::CreateJobRequest> with_records;
   const v1::CreateJobRequest* whole = &request;
@@ -199,7 +205,7 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
   absl::StatusOr<Submission> submission = Submission{};
   if (backend.jobs.durable()) submission = MakeSubmission(backend, *whole);
   if (!submission.ok()) return submission.status();
-  const auto job = backend.scheduler.Submit(std::move(made->spec), std::move(made->scene), *submission, *key);
+  const auto job = backend.scheduler.Submit(std::move(made->spec), std::move(made->scene), *submission, *key, quotas);
   if (!job.ok()) return job.status();
   return WholeJob(*job);
 }

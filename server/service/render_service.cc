@@ -131,8 +131,11 @@ absl::StatusOr<std::shared_ptr<JobWatch>> RenderService::StartWatch(const Contex
   const double seconds = std::min(1 / rate, 1e6);
   const auto interval = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
   Watch::Hooks hooks;
+  hooks.watcher = caller->name;
+  hooks.is_known = [this, caller = *caller] { return backend_.guard.Recheck(caller); };
   if (request.cancel_on_disconnect()) {
     const auto may_cancel = [this, caller = *caller, id = *id] {
+      if (absl::Status is_known = backend_.guard.Recheck(caller); !is_known.ok()) return is_known;
       return backend_.access.CheckRight(caller, JobRight::kControl, id);
     };
     if (absl::Status allowed = may_cancel(); !allowed.ok()) return allowed;
@@ -144,7 +147,8 @@ absl::StatusOr<std::shared_ptr<JobWatch>> RenderService::StartWatch(const Contex
     hooks.may_see = [this, caller = *caller, id = *id] { return backend_.access.FindSeen(caller, id).status(); };
   }
   auto watch = std::make_shared<JobWatch>(hub_, *id, known, interval, std::move(hooks));
-  if (absl::Status added = hub_.Add(id->Name(), watch); !added.ok()) return added;
+  if (absl::Status added = hub_.Add(id->Name(), watch, backend_.guard.QuotasOf(*caller).watches); !added.ok())
+    return added;
   if (known) ++hub_.counts().resumed;
   return watch;
 }

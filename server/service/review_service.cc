@@ -71,9 +71,12 @@ absl::StatusOr<std::shared_ptr<RoomWatch>> ReviewService::StartWatch(const Conte
   const std::uint64_t known = resumes ? request.after_sequence() : 0;
   if (const auto ahead = backend_.rooms.ReadAfter(room->id, known); !ahead.ok()) return ahead.status();
   Watch::Hooks hooks;
+  hooks.watcher = caller->name;
+  hooks.is_known = [this, caller = *caller] { return backend_.guard.Recheck(caller); };
   hooks.may_see = [this, caller = *caller, name = request.name()] { return calls_.FindSeen(caller, name).status(); };
   auto watch = std::make_shared<RoomWatch>(hub_, backend_.rooms, room->id, room->epoch, known, std::move(hooks));
-  if (absl::Status added = hub_.Add(room->id.Name(), watch); !added.ok()) return added;
+  const auto most = backend_.guard.QuotasOf(*caller).watches;
+  if (absl::Status added = hub_.Add(room->id.Name(), watch, most); !added.ok()) return added;
   if (resumes) ++hub_.counts().resumed;
   return watch;
 }

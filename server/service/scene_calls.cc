@@ -14,6 +14,7 @@
 #include "server/service/machine.h"
 #include "server/service/page.h"
 #include "server/service/policy.h"
+#include "server/service/quota_calls.h"
 #include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
 #include "server/store/error.h"
@@ -94,8 +95,12 @@ absl::StatusOr<v1::SceneInfo> ChangeShares(Backend& backend, const Caller& calle
 
 absl::StatusOr<v1::UploadSceneResponse> UploadScene(Backend& backend, const Caller& caller,
                                                     const v1::UploadSceneRequest& request) {
-  const auto received =
-      backend.scenes.Upload(caller.name, request.sha256(), request.total_bytes(), request.offset(), request.data());
+  std::optional<SceneRoom> room;
+  if (const auto& allowed = backend.guard.QuotasOf(caller).storage_bytes) {
+    room = SceneRoom{*allowed, backend.jobs.StoredBytesOf(caller.name)};
+  }
+  const auto received = backend.scenes.Upload(caller.name, request.sha256(), request.total_bytes(), request.offset(),
+                                              request.data(), room);
   if (!received.ok()) return received.status();
   v1::UploadSceneResponse response;
   response.set_name("scenes/" + request.sha256());
@@ -204,7 +209,7 @@ absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const 
   return response;
 }
 
-v1::GetCapabilitiesResponse GetCapabilities(const Backend& backend) {
+v1::GetCapabilitiesResponse GetCapabilities(Backend& backend, const Caller& caller) {
   v1::GetCapabilitiesResponse response;
   response.set_version(backend.version);
   response.set_api_version("flatlight.v1");
@@ -219,11 +224,12 @@ v1::GetCapabilitiesResponse GetCapabilities(const Backend& backend) {
   limits.set_max_pixels(backend.limits.max_pixels);
   limits.set_max_running_jobs(backend.limits.max_running_jobs);
   limits.set_max_jobs(backend.limits.max_jobs);
-  limits.set_max_jobs_per_user(backend.limits.max_jobs_per_user);
+  limits.set_max_jobs_per_user(backend.guard.QuotasOf(caller).jobs.value_or(backend.limits.max_jobs));
   limits.set_max_watches(backend.limits.max_watches);
   response.set_threads(static_cast<std::uint32_t>(backend.threads));
   response.set_processor(ProcessorModel());
   response.set_processors(UsableProcessors());
+  *response.mutable_quotas() = QuotasToProto(backend, caller);
   return response;
 }
 

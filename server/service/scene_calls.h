@@ -25,7 +25,7 @@ absl::StatusOr<v1::SceneInfo> UnshareScene(Backend& backend, const Caller& calle
 absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const Caller& caller,
                                                         const v1::ValidateSceneRequest& request,
                                                         const Proceed& proceed);
-v1::GetCapabilitiesResponse GetCapabilities(const Backend& backend);
+v1::GetCapabilitiesResponse GetCapabilities(Backend& backend, const Caller& caller);
 
 }  // namespace flatlight
 

@@ -68,8 +68,9 @@ grpc::ServerUnaryReactor* SceneService::ValidateScene(Context* context, const By
 grpc::ServerUnaryReactor* ServerService::GetCapabilities(grpc::CallbackServerContext* context,
                                                          const grpc::ByteBuffer* request, grpc::ByteBuffer* response) {
   return Answer<v1::GetCapabilitiesRequest>(
-      backend_, context, request, response, kInlineLane, [this](const Caller&, const v1::GetCapabilitiesRequest&) {
-        return absl::StatusOr<v1::GetCapabilitiesResponse>(flatlight::GetCapabilities(backend_));
+      backend_, context, request, response, kInlineLane,
+      [this](const Caller& caller, const v1::GetCapabilitiesRequest&) {
+        return absl::StatusOr<v1::GetCapabilitiesResponse>(flatlight::GetCapabilities(backend_, caller));
       });
 }
 

@@ -59,13 +59,13 @@ constexpr char kStorageHealth[] = "flatlight.storage";
 constexpr int kQuickThreads = 4;
 constexpr int kSlowThreads = 2;
 
-SchedulerOptions MakeSchedulerOptions(const ServerOptions& options, Metrics& metrics) {
+SchedulerOptions MakeSchedulerOptions(const ServerOptions& options, Metrics& metrics, CpuLedger& ledger) {
   SchedulerOptions scheduler;
   scheduler.events = &metrics;
   scheduler.runners = 2;
   scheduler.starters = 2;
   scheduler.max_running_jobs = options.limits.max_running_jobs;
-  scheduler.max_jobs_per_user = options.limits.max_jobs_per_user;
+  scheduler.ledger = &ledger;
   scheduler.checkpoint_interval = options.checkpoint_interval;
   return scheduler;
 }
@@ -105,6 +105,8 @@ struct Server::Parts {
       : logs(std::move(opened_logs)),
         pool(options.threads),
         storage(std::move(opened)),
+        quotas(options.quotas),
+        ledger(storage.get(), {.interval = options.checkpoint_interval, .now = options.day_clock}),
         archive(storage == nullptr ? nullptr : std::make_unique<JobArchive>(*storage, BuildVersion())),
         format(BuildVersion()),
         job_store(MakeJobStore(options)),
@@ -112,21 +114,28 @@ struct Server::Parts {
         scene_store(MakeSceneStore(options)),
         scenes(*scene_store),
         rooms(RoomLimits(), std::move(for_rooms)),
-        hub({.epoch = RandomEpoch(), .max_watches = options.limits.max_watches, .heartbeat = options.heartbeat}, jobs),
-        scheduler(MakeSchedulerOptions(options, metrics), jobs, pool, clock, StartOf(options),
+        hub({.epoch = RandomEpoch(),
+             .max_watches = options.limits.max_watches,
+             .heartbeat = options.heartbeat,
+             .users_version = [this] { return backend.guard.UsersVersion(); }},
+            jobs),
+        scheduler(MakeSchedulerOptions(options, metrics, ledger), jobs, pool, clock, StartOf(options),
                   [this](const JobId& job) { hub.Changed(job.Name()); }),
         quick(kQuickThreads, kMaxWaitingQuickBytes),
         slow(kSlowThreads, kMaxWaitingSlowBytes),
         backend{.version = BuildVersion(),
                 .limits = options.limits,
                 .threads = pool.threads(),
-                .guard = Guard(options.token, std::move(users)),
+                .guard = Guard(options.token, std::move(users), quotas,
+                               options.request_clock == nullptr ? clock : *options.request_clock),
                 .jobs = jobs,
                 .scenes = scenes,
                 .rooms = rooms,
                 .access = JobAccess(jobs, rooms),
                 .built_scenes = built_scenes,
                 .scheduler = scheduler,
+                .ledger = ledger,
+                .hub = hub,
                 .quick = quick,
                 .slow = slow,
                 .telemetry = telemetry},
@@ -184,7 +193,9 @@ struct Server::Parts {
     const auto restored = durable->Restore();
     if (!restored.ok()) return restored.status();
     for (const JobRecord& job : *restored) {
-      scheduler.Resubmit(job, [this, spec = job.spec] { return RestoreJob(backend, *archive, *spec); });
+      scheduler.Resubmit(
+          job, [this, spec = job.spec] { return RestoreJob(backend, *archive, *spec); },
+          backend.guard.QuotasOf(job.spec->owner));
     }
     return absl::OkStatus();
   }
@@ -229,6 +240,8 @@ struct Server::Parts {
   IndexCache indexes{kMaxIndexedElements, kMaxSolvedBytes};
   ThreadPool pool;
   std::unique_ptr<Storage> storage;  // Null, as are the archive and `durable`: nothing outlives the process.
+  const QuotaTable quotas;
+  CpuLedger ledger;
   std::unique_ptr<JobArchive> archive;
   ProtoJobFormat format;
   DurableJobStore* durable = nullptr;
@@ -322,7 +335,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   int port = 0;
   builder.AddListeningPort(address->ToString(address->port), parts->NewCredentials(), &port);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-  SetConnectionLimits(builder, options.limits, options.keepalive);
+  SetConnectionLimits(builder, options.limits, options.keepalive, options.connection_memory_bytes);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
   interceptors.push_back(parts->telemetry.MakeFactory());
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
@@ -355,6 +368,7 @@ void Server::Drain(std::chrono::milliseconds grace) {
   parts.grpc->GetHealthCheckService()->Shutdown();
   parts.hub.Drain(grace);
   parts.scheduler.Stop();
+  parts.ledger.Close();
   if (parts.durable != nullptr) parts.durable->Close();
   parts.backend.calls.AwaitNone(grace);
   // Answers are on their way; what remains is to write them, and idle connections.

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "core/execution/clock.h"
+#include "server/quota/quotas.h"
 #include "server/scheduler/scheduler.h"
 #include "server/service/limits.h"
 #include "server/service/tls_files.h"
@@ -24,11 +26,16 @@ struct ServerOptions {
   int threads = 1;    // For rendering.
   std::string data;   // A folder for what is to outlive the process; empty: nothing does.
   Limits limits;
+  QuotaTable quotas;
   std::string metrics_address;  // A loopback address and port for Prometheus; empty: none is served.
   std::string log;              // A file for a line about each call, or "-"; empty: none.
   std::chrono::milliseconds checkpoint_interval{3000};  // Of a job, at least. With `data`.
   std::chrono::milliseconds keepalive{60'000};          // See SetConnectionLimits.
+  std::size_t connection_memory_bytes = 512u << 20;     // Of gRPC's buffers; a thousand watchers take an eighth.
   std::chrono::milliseconds heartbeat{10'000};          // Between messages of a watch on which nothing happens.
+  // Tests give their own: of quotas for requests (null: that of the machine), and of the day of UTC.
+  const Clock* request_clock = nullptr;
+  std::function<std::chrono::system_clock::time_point()> day_clock = std::chrono::system_clock::now;
   // Tests give their own; else StartRendering, on indexes that jobs share (JobSpec::sharers).
   std::function<std::unique_ptr<Rendering>(std::shared_ptr<const Scene>, const Plan&)> start_rendering;
 };

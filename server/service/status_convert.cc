@@ -2,7 +2,9 @@
 #include "server/service/status_convert.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 
 #include "absl/strings/cord.h"
@@ -53,6 +55,13 @@ void AddQuota(const QuotaViolation& quota, const std::string& message, google::r
   status.add_details()->PackFrom(retry);
 }
 
+// "12", "12.5".
+std::string NumberText(double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.15g", value);
+  return text.data();
+}
+
 // The first violations that fit in; returns how many.
 int AddViolations(const std::string& payload, google::rpc::Status& status) {
   google::rpc::BadRequest all;
@@ -101,7 +110,13 @@ google::rpc::Status ToRpcStatus(const absl::Status& status) {
   info.set_domain("flatlight");
   const std::string reason = ReasonOf(status);
   info.set_reason(reason.empty() ? absl::StatusCodeToString(status.code()) : reason);
-  if (const auto quota = QuotaViolationOf(status)) AddQuota(*quota, result.message(), result);
+  if (const auto quota = QuotaViolationOf(status)) {
+    AddQuota(*quota, result.message(), result);
+    if (quota->use) {
+      (*info.mutable_metadata())["used"] = NumberText(quota->use->used);
+      (*info.mutable_metadata())["allowed"] = NumberText(quota->use->allowed);
+    }
+  }
   if (const std::string payload = Payload(status, kBadRequest); !payload.empty()) {
     const int kept = AddViolations(payload, result);
     const std::string total = Payload(status, kViolations);

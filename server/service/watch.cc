@@ -31,10 +31,16 @@ Watch::Decision Watch::Decide(Time now) {
     return DecideFinish(ToGrpcStatus(
         MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down; watch again later")));
   }
-  if (access_changed_.exchange(false) && hooks_.may_see) {
-    if (const absl::Status seen = hooks_.may_see(); !seen.ok()) return DecideFinish(ToGrpcStatus(seen));
-  }
+  if (const absl::Status may_go_on = CheckWatcher(); !may_go_on.ok()) return DecideFinish(ToGrpcStatus(may_go_on));
   return DecideNext(now);
+}
+
+absl::Status Watch::CheckWatcher() {
+  if (users_changed_.exchange(false) && hooks_.is_known) {
+    if (absl::Status known = hooks_.is_known(); !known.ok()) return known;
+  }
+  if (access_changed_.exchange(false) && hooks_.may_see) return hooks_.may_see();
+  return absl::OkStatus();
 }
 
 Watch::Decision Watch::DecideFinish(const grpc::Status& status) {

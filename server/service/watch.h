@@ -24,16 +24,22 @@ class Watch : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std::ena
   using Time = WatchHub::Time;
 
   struct Hooks {
+    std::string watcher = {};  // Who watches.
     // Is called at most once: when the reader goes while the server is up. May be empty.
     std::function<void()> on_disconnect = nullptr;
     // Says, at the beginning and after NoteAccessChange, with what error the watch ends. Empty: with none.
     std::function<absl::Status()> may_see = nullptr;
+    // The same, after NoteUsersChange: of who watches, whatever is watched.
+    std::function<absl::Status()> is_known = nullptr;
   };
 
   // Writes, finishes or waits, as what is watched, the reader and the clock ask for. May be called at any time.
   void Step();
   // Heeded by the next step.
   void NoteAccessChange() { access_changed_ = true; }
+  void NoteUsersChange() { users_changed_ = true; }
+
+  const std::string& watcher() const { return hooks_.watcher; }
 
   void OnWriteDone(bool ok) override;
   void OnCancel() override;
@@ -79,12 +85,15 @@ class Watch : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public std::ena
  private:
   enum class Write : std::uint8_t { kNone, kNews, kStatement };
   Decision Decide(Time now) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // With what error the watch is to end.
+  absl::Status CheckWatcher();
   Decision DecideStatement(bool draining, Time now) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const std::string subject_;
   const Hooks hooks_;
   // At first too: what changed before the hub knew this watch was not noted.
   std::atomic<bool> access_changed_ = true;
+  std::atomic<bool> users_changed_ = true;
   Write writing_ ABSL_GUARDED_BY(mutex_) = Write::kNone;
   grpc::ByteBuffer bytes_ ABSL_GUARDED_BY(mutex_);  // In flight.
   bool said_draining_ ABSL_GUARDED_BY(mutex_) = false;

@@ -7,6 +7,11 @@
 #include "server/store/error.h"
 
 namespace flatlight {
+namespace {
+
+constexpr std::chrono::seconds kRetryLater{2};
+
+}  // namespace
 
 WatchHub::WatchHub(const Options& options, JobStore& jobs)
     : options_(options), jobs_(jobs), thread_([this] { Work(); }) {}
@@ -20,16 +25,27 @@ WatchHub::~WatchHub() {
   thread_.join();
 }
 
-absl::Status WatchHub::Add(const std::string& subject, const std::shared_ptr<Watch>& watch) {
+absl::Status WatchHub::Add(const std::string& subject, const std::shared_ptr<Watch>& watch,
+                           std::optional<std::uint32_t> most_of_watcher) {
   const std::lock_guard lock(mutex_);
   if (draining_) return MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down");
   if (count_ >= options_.max_watches) {
     return MakeQuotaError(
         "TOO_MANY_WATCHES", "max_watches",
-        std::to_string(count_) + " watches are open; allowed: " + std::to_string(options_.max_watches),
-        std::chrono::seconds(2));
+        std::to_string(count_) + " watches are open; allowed: " + std::to_string(options_.max_watches), kRetryLater);
+  }
+  if (most_of_watcher) {
+    const auto own = count_of_.find(watch->watcher());
+    const std::uint32_t open = own == count_of_.end() ? 0 : own->second;
+    if (open >= *most_of_watcher) {
+      return MakeQuotaError("TOO_MANY_OWN_WATCHES", "max_watches_per_user",
+                            std::to_string(open) + " of your watches are open; allowed: " +
+                                std::to_string(*most_of_watcher) + ". End one first",
+                            kRetryLater, QuotaUse{static_cast<double>(open), static_cast<double>(*most_of_watcher)});
+    }
   }
   ++count_;
+  ++count_of_[watch->watcher()];
   ++counts_.added;
   watched_[subject].watches.insert(watch);
   soon_.push_back(watch);
@@ -69,6 +85,12 @@ bool WatchHub::draining() const {
 std::size_t WatchHub::size() const {
   const std::lock_guard lock(mutex_);
   return count_;
+}
+
+std::size_t WatchHub::SizeOf(const std::string& watcher) const {
+  const std::lock_guard lock(mutex_);
+  const auto own = count_of_.find(watcher);
+  return own == count_of_.end() ? 0 : own->second;
 }
 
 std::shared_ptr<WatchUpdate> WatchHub::UpdateFor(const JobRecord& job, WatchUpdate::Known known) {
@@ -114,6 +136,7 @@ void WatchHub::Remove(const std::string& subject, const std::shared_ptr<Watch>& 
   watched->second.watches.erase(watch);
   if (watched->second.watches.empty()) watched_.erase(watched);
   --count_;
+  if (const auto own = count_of_.find(watch->watcher()); --own->second == 0) count_of_.erase(own);
   left_.notify_all();
 }
 
@@ -134,15 +157,36 @@ std::vector<std::shared_ptr<Watch>> WatchHub::TakeDue() {
   return due;
 }
 
+void WatchHub::MaybeLookAtUsers(std::unique_lock<std::mutex>& lock) {
+  if (!options_.users_version || count_ == 0) return;
+  const Time now = std::chrono::steady_clock::now();
+  if (now < next_look_) return;
+  next_look_ = now + options_.users_interval;
+  lock.unlock();
+  const std::int64_t version = options_.users_version();
+  lock.lock();
+  if (users_version_ == version) return;
+  users_version_ = version;
+  for (const auto& [subject, watched] : watched_) {
+    for (const auto& watch : watched.watches) {
+      watch->NoteUsersChange();
+      soon_.push_back(watch);
+    }
+  }
+}
+
 void WatchHub::Work() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
+    MaybeLookAtUsers(lock);
     std::vector<std::shared_ptr<Watch>> due = TakeDue();
     if (due.empty()) {
-      if (timetable_.empty()) {
+      Time next = Time::max();
+      if (!timetable_.empty()) next = timetable_.begin()->first;
+      if (count_ > 0 && options_.users_version) next = std::min(next, next_look_);
+      if (next == Time::max()) {
         wake_.wait(lock);
       } else {
-        const Time next = timetable_.begin()->first;  // A copy: the entry may go while this waits.
         wake_.wait_until(lock, next);
       }
       continue;

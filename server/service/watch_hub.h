@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -38,6 +39,10 @@ class WatchHub {
     std::chrono::milliseconds heartbeat{10'000};
     // A watcher that takes longer for one of several messages lets go of their state, and begins anew with the newest.
     std::chrono::milliseconds stall{30'000};
+    // Another number whenever somebody may have ceased to be a user; asked every `users_interval` while there are
+    // watches. Then each asks whether its own watcher still is one. Null: that never happens.
+    std::function<std::int64_t()> users_version = nullptr;
+    std::chrono::milliseconds users_interval{500};
   };
 
   // Since the start.
@@ -55,8 +60,10 @@ class WatchHub {
   const Options& options() const { return options_; }
   JobStore& jobs() { return jobs_; }
 
-  // RESOURCE_EXHAUSTED at the limit, UNAVAILABLE while draining.
-  absl::Status Add(const std::string& subject, const std::shared_ptr<Watch>& watch);
+  // RESOURCE_EXHAUSTED at the limit of all watches, or at that of its watcher's (absent: none); UNAVAILABLE while
+  // draining.
+  absl::Status Add(const std::string& subject, const std::shared_ptr<Watch>& watch,
+                   std::optional<std::uint32_t> most_of_watcher);
   void Changed(const std::string& subject);
   // Watches that rest on what is shared ask anew whether they may go on.
   void AccessChanged(const std::string& subject);
@@ -67,6 +74,7 @@ class WatchHub {
   bool draining() const;
   // Watches that are open.
   std::size_t size() const;
+  std::size_t SizeOf(const std::string& watcher) const;
   Counts& counts() { return counts_; }
   std::shared_ptr<WatchUpdate> UpdateFor(const JobRecord& job, WatchUpdate::Known known);
   void StepSoon(const std::shared_ptr<Watch>& watch);
@@ -83,6 +91,8 @@ class WatchHub {
   // Moves all watches that are to be stepped now to the caller.
   std::vector<std::shared_ptr<Watch>> TakeDue() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void Unschedule(Watch& watch) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // If it is time, and they may have changed: all watches are to be stepped.
+  void MaybeLookAtUsers(std::unique_lock<std::mutex>& lock) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   const Options options_;
   JobStore& jobs_;
@@ -93,10 +103,14 @@ class WatchHub {
   bool stopping_ ABSL_GUARDED_BY(mutex_) = false;
   bool draining_ ABSL_GUARDED_BY(mutex_) = false;
   std::size_t count_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::unordered_map<std::string, std::uint32_t> count_of_ ABSL_GUARDED_BY(mutex_);  // By watcher; none of 0.
   std::unordered_map<std::string, Watched> watched_ ABSL_GUARDED_BY(mutex_);
   std::unordered_set<std::string> changed_ ABSL_GUARDED_BY(mutex_);
   std::vector<std::shared_ptr<Watch>> soon_ ABSL_GUARDED_BY(mutex_);
   std::set<std::pair<Time, std::shared_ptr<Watch>>> timetable_ ABSL_GUARDED_BY(mutex_);  // One entry a watch.
+  // The thread's alone.
+  Time next_look_;
+  std::optional<std::int64_t> users_version_;
   std::thread thread_;
 };
 

@@ -67,6 +67,7 @@ class DurableJobStore final : public JobStore {
   absl::Status Share(const JobId& id, const Grant& grant) override;
   absl::Status Unshare(const JobId& id, const Grantee& grantee) override;
   absl::StatusOr<std::vector<Grant>> GrantsOf(const JobId& id) override;
+  std::uint64_t StoredBytesOf(const std::string& owner) override { return archive_.StoredBytesOf(owner); }
   bool durable() const override { return true; }
   absl::StatusOr<JobRecord> AwaitEnd(const JobId& id) override;
   absl::StatusOr<std::shared_ptr<const std::string>> WrittenResult(const JobId& id) override;

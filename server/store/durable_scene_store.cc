@@ -71,8 +71,8 @@ absl::Status DurableSceneStore::RestoreOwners() {
 
 absl::StatusOr<std::uint64_t> DurableSceneStore::Upload(const std::string& owner, const std::string& sha256,
                                                         std::uint64_t total_bytes, std::uint64_t offset,
-                                                        std::string_view data) {
-  auto there = memory_.Upload(owner, sha256, total_bytes, offset, data);
+                                                        std::string_view data, const std::optional<SceneRoom>& room) {
+  auto there = memory_.Upload(owner, sha256, total_bytes, offset, data, room);
   // A mere question has nothing to complete.
   if (!there.ok() || *there < total_bytes || data.empty()) return there;
   const auto scene = memory_.Get(sha256);

@@ -21,8 +21,11 @@ class DurableSceneStore final : public SceneStore {
   // Reads the scenes of the process before. To be called once, first.
   absl::Status Restore();
 
+  using SceneStore::Upload;
   absl::StatusOr<std::uint64_t> Upload(const std::string& owner, const std::string& sha256, std::uint64_t total_bytes,
-                                       std::uint64_t offset, std::string_view data) override;
+                                       std::uint64_t offset, std::string_view data,
+                                       const std::optional<SceneRoom>& room) override;
+  std::uint64_t BytesOf(const std::string& owner) override { return memory_.BytesOf(owner); }
   absl::StatusOr<StoredScene> Get(const std::string& sha256) override { return memory_.Get(sha256); }
   bool Owns(const std::string& owner, const std::string& sha256) override { return memory_.Owns(owner, sha256); }
   bool SetTitle(const std::string& reader, const std::string& sha256, const std::string& title) override;

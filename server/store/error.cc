@@ -11,6 +11,8 @@ namespace {
 constexpr char kReason[] = "flatlight/reason";
 constexpr char kQuotaSubject[] = "flatlight/quota-subject";
 constexpr char kRetryMilliseconds[] = "flatlight/retry-milliseconds";
+constexpr char kQuotaUsed[] = "flatlight/quota-used";
+constexpr char kQuotaAllowed[] = "flatlight/quota-allowed";
 
 std::string Payload(const absl::Status& error, const char* key) {
   const auto payload = error.GetPayload(key);
@@ -26,10 +28,14 @@ absl::Status MakeError(absl::StatusCode code, const std::string& reason, const s
 }
 
 absl::Status MakeQuotaError(const std::string& reason, const std::string& subject, const std::string& message,
-                            std::chrono::milliseconds retry_after) {
+                            std::chrono::milliseconds retry_after, const std::optional<QuotaUse>& use) {
   absl::Status error = MakeError(absl::StatusCode::kResourceExhausted, reason, message);
   error.SetPayload(kQuotaSubject, absl::Cord(subject));
   error.SetPayload(kRetryMilliseconds, absl::Cord(std::to_string(retry_after.count())));
+  if (use) {
+    error.SetPayload(kQuotaUsed, absl::Cord(std::to_string(use->used)));
+    error.SetPayload(kQuotaAllowed, absl::Cord(std::to_string(use->allowed)));
+  }
   return error;
 }
 
@@ -39,7 +45,11 @@ std::optional<QuotaViolation> QuotaViolationOf(const absl::Status& error) {
   const std::string subject = Payload(error, kQuotaSubject);
   if (subject.empty()) return std::nullopt;
   const std::string milliseconds = Payload(error, kRetryMilliseconds);
-  return QuotaViolation{subject, std::chrono::milliseconds(std::strtoll(milliseconds.c_str(), nullptr, 10))};
+  QuotaViolation violation{subject, std::chrono::milliseconds(std::strtoll(milliseconds.c_str(), nullptr, 10))};
+  if (const std::string used = Payload(error, kQuotaUsed); !used.empty()) {
+    violation.use = {std::strtod(used.c_str(), nullptr), std::strtod(Payload(error, kQuotaAllowed).c_str(), nullptr)};
+  }
+  return violation;
 }
 
 }  // namespace flatlight

@@ -14,13 +14,20 @@ namespace flatlight {
 
 absl::Status MakeError(absl::StatusCode code, const std::string& reason, const std::string& message);
 
+// Of one's own: how much is used, and how much is allowed, in the limit's unit.
+struct QuotaUse {
+  double used = 0;
+  double allowed = 0;
+};
+
 // RESOURCE_EXHAUSTED. `subject` names the limit ("max_jobs").
 absl::Status MakeQuotaError(const std::string& reason, const std::string& subject, const std::string& message,
-                            std::chrono::milliseconds retry_after);
+                            std::chrono::milliseconds retry_after, const std::optional<QuotaUse>& use = std::nullopt);
 
 struct QuotaViolation {
   std::string subject;
   std::chrono::milliseconds retry_after{0};
+  std::optional<QuotaUse> use = std::nullopt;
 };
 
 // Empty if the error was not made by the functions above.

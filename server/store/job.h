@@ -47,7 +47,8 @@ inline bool HasEnded(JobPhase phase) { return phase > JobPhase::kPaused; }
 struct QueuePlace {
   enum class Reason : std::uint8_t {
     kServerFull,  // As many jobs run as the server has places for.
-    kOwnJobs      // Its owner's jobs hold as many places as are left for others.
+    kOwnJobs,     // Its owner's jobs hold as many places as are left for others.
+    kDayUsedUp    // Its owner's jobs have had the processor time that they may have in a day.
   };
   Reason reason = Reason::kServerFull;
   std::size_t ahead = 0;                   // Jobs that begin before it, if no others come.
@@ -85,7 +86,7 @@ struct JobState {
   double cpu_seconds = 0;      // Processor time of all threads that worked for the job.
   std::optional<WallTime> start_time;
   std::optional<WallTime> end_time;
-  std::optional<QueuePlace> queue;      // Of a job that waits for a place to run.
+  std::optional<QueuePlace> queue;      // Of a job that is queued.
   std::optional<EndReason> end_reason;  // Of a job that succeeded.
   absl::Status error;                   // Of a job that failed.
   std::shared_ptr<const Field> field;   // Null before the first picture.

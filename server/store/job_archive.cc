@@ -29,22 +29,25 @@ ArchivedJob JobOf(const Statement& row) {
   return job;
 }
 
-// What a job holds of blobs, given back.
-absl::Status ReleaseBlobs(Writing& writing, const std::string& condition, std::int64_t parameter) {
-  Statement blobs = writing.Prepare("SELECT request, scene, result, checkpoint FROM jobs WHERE " + condition);
+// What a job holds of blobs, given back; `removed` gets what its owner has less.
+absl::Status ReleaseBlobs(Writing& writing, const std::string& condition, std::int64_t parameter,
+                          StoredBytes& removed) {
+  Statement blobs =
+      writing.Prepare("SELECT request, scene, result, checkpoint, owner, stored_bytes FROM jobs WHERE " + condition);
   blobs.Bind(parameter);
   while (true) {
     const auto row = blobs.Step();
     if (!row.ok()) return row.status();
     if (!*row) return absl::OkStatus();
+    removed[blobs.Bytes(4)] += blobs.Integer(5);
     for (int column = 0; column < 4; ++column) {
       if (absl::Status less = writing.Release(blobs.OptionalBytes(column)); !less.ok()) return less;
     }
   }
 }
 
-absl::Status RemoveJobs(Writing& writing, const std::string& condition, std::int64_t parameter) {
-  if (absl::Status less = ReleaseBlobs(writing, condition, parameter); !less.ok()) return less;
+absl::Status RemoveJobs(Writing& writing, const std::string& condition, std::int64_t parameter, StoredBytes& removed) {
+  if (absl::Status less = ReleaseBlobs(writing, condition, parameter, removed); !less.ok()) return less;
   return writing.Prepare("DELETE FROM jobs WHERE " + condition).Bind(parameter).Run();
 }
 
@@ -119,6 +122,7 @@ absl::StatusOr<JobId> JobArchive::Insert(const JobId& id, const std::string& own
     if (!prepared.ok()) return prepared.status();
     scene = *std::move(prepared);
   }
+  const auto stored_bytes = static_cast<std::int64_t>(request->bytes->size());
   JobId made = id;
   const absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
     if (key) {
@@ -139,12 +143,15 @@ absl::StatusOr<JobId> JobArchive::Insert(const JobId& id, const std::string& own
       if (absl::Status used = writing.Use(*scene); !used.ok()) return used;
     }
     Statement job = writing.Prepare(
-        "INSERT INTO jobs(uuid, owner, request, scene, message, sequence, build) VALUES(?, ?, ?, ?, ?, 0, ?)");
+        "INSERT INTO jobs(uuid, owner, request, scene, message, sequence, build, stored_bytes) VALUES(?, ?, ?, ?, ?, "
+        "0, "
+        "?, ?)");
     job.Bind(std::string_view(id.uuid())).Bind(std::string_view(owner)).Bind(std::string_view(request->sha256));
     job.Bind(scene ? std::optional(scene->sha256) : std::nullopt).BindBlob(message).Bind(std::string_view(build_));
-    return job.Run();
+    return job.Bind(stored_bytes).Run();
   });
   if (!written.ok()) return written;
+  if (made == id) AddStoredBytes(owner, stored_bytes);
   return made;
 }
 
@@ -184,42 +191,70 @@ absl::Status JobArchive::End(const JobId& id, std::string message, std::uint64_t
     if (!prepared.ok()) return prepared.status();
     blob = *std::move(prepared);
   }
-  return storage_.Write([&](Writing& writing) -> absl::Status {
+  const std::int64_t stored_bytes = blob ? static_cast<std::int64_t>(blob->bytes->size()) : 0;
+  std::string owner;
+  absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
     const auto number = NumberOf(writing.database(), id);
     if (!number.ok()) return number.status();
     if (blob) {
       if (absl::Status used = writing.Use(*blob); !used.ok()) return used;
     }
-    Statement old = writing.Prepare("SELECT result, checkpoint, scene FROM jobs WHERE number = ?");
+    Statement old = writing.Prepare("SELECT result, checkpoint, scene, owner FROM jobs WHERE number = ?");
     old.Bind(*number);
     if (const auto row = old.Step(); !row.ok()) return row.status();
+    owner = old.Bytes(3);
     for (int column = 0; column < 3; ++column) {
       if (absl::Status less = writing.Release(old.OptionalBytes(column)); !less.ok()) return less;
     }
     return writing
         .Prepare(
             "UPDATE jobs SET message = ?, sequence = ?, end_time = ?, result = ?, checkpoint = NULL, scene = NULL, "
-            "build = ? WHERE number = ?")
+            "build = ?, stored_bytes = stored_bytes + ? WHERE number = ?")
         .BindBlob(message)
         .Bind(static_cast<std::int64_t>(sequence))
         .Bind(SecondsOf(now))
         .Bind(blob ? std::optional(blob->sha256) : std::nullopt)
         .Bind(std::string_view(build_))
+        .Bind(stored_bytes)
         .Bind(*number)
         .Run();
   });
+  if (written.ok()) AddStoredBytes(owner, stored_bytes);
+  return written;
 }
 
 absl::Status JobArchive::Delete(const JobId& id) {
-  return storage_.Write([&](Writing& writing) -> absl::Status {
+  StoredBytes removed;
+  absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
     const auto number = NumberOf(writing.database(), id);
     if (!number.ok()) return number.status();
-    return RemoveJobs(writing, "number = ?", *number);
+    return RemoveJobs(writing, "number = ?", *number, removed);
   });
+  if (!written.ok()) return written;
+  for (const auto& [owner, bytes] : removed) AddStoredBytes(owner, -bytes);
+  return written;
 }
 
 absl::Status JobArchive::DropEnded(WallTime before) {
-  return storage_.Write([&](Writing& writing) { return RemoveJobs(writing, "end_time < ?", SecondsOf(before)); });
+  StoredBytes removed;
+  absl::Status written =
+      storage_.Write([&](Writing& writing) { return RemoveJobs(writing, "end_time < ?", SecondsOf(before), removed); });
+  if (!written.ok()) return written;
+  for (const auto& [owner, bytes] : removed) AddStoredBytes(owner, -bytes);
+  return written;
+}
+
+std::uint64_t JobArchive::StoredBytesOf(const std::string& owner) {
+  const std::lock_guard lock(stored_mutex_);
+  const auto stored = stored_bytes_.find(owner);
+  return stored == stored_bytes_.end() ? 0 : static_cast<std::uint64_t>(stored->second);
+}
+
+void JobArchive::AddStoredBytes(const std::string& owner, std::int64_t bytes) {
+  const std::lock_guard lock(stored_mutex_);
+  const auto stored = stored_bytes_.try_emplace(owner).first;
+  stored->second += bytes;
+  if (stored->second <= 0) stored_bytes_.erase(stored);
 }
 
 absl::Status JobArchive::DropRequests(WallTime before) {

@@ -17,6 +17,7 @@
 #include "server/store/job_id.h"
 #include "server/store/job_store.h"
 #include "server/store/storage.h"
+#include "server/store/stored_bytes.h"
 
 namespace flatlight {
 
@@ -35,7 +36,8 @@ struct ArchivedJob {
 // use from any thread.
 class JobArchive {
  public:
-  JobArchive(Storage& storage, std::string build) : storage_(storage), build_(std::move(build)) {}
+  JobArchive(Storage& storage, std::string build)
+      : storage_(storage), build_(std::move(build)), stored_bytes_(MeasureStoredBytes(storage)) {}
 
   // As JobStore's.
   absl::StatusOr<std::optional<JobId>> FindRequest(const RequestKey& key, WallTime now);
@@ -69,6 +71,8 @@ class JobArchive {
   absl::StatusOr<Page> ListShared(const std::vector<Grantee>& who, const std::string& owner,
                                   std::optional<std::uint64_t> before, std::size_t limit);
   absl::StatusOr<std::vector<ArchivedJob>> Unfinished();  // Oldest first.
+  // Of requests and results of an owner's jobs. From memory.
+  std::uint64_t StoredBytesOf(const std::string& owner);
 
   absl::StatusOr<std::string> Fetch(const std::string& sha256) { return storage_.Fetch(sha256); }
   // Of a job that has not ended.
@@ -79,8 +83,12 @@ class JobArchive {
   // Of jobs whose grants are remembered, as every call asks for them; then all are forgotten.
   static constexpr std::size_t kMostGranted = 10'000;
 
+  void AddStoredBytes(const std::string& owner, std::int64_t bytes);
+
   Storage& storage_;
   const std::string build_;
+  std::mutex stored_mutex_;
+  StoredBytes stored_bytes_ ABSL_GUARDED_BY(stored_mutex_);
   std::mutex grants_mutex_;
   std::unordered_map<JobId, std::vector<Grant>> grants_ ABSL_GUARDED_BY(grants_mutex_);
 };

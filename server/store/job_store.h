@@ -76,6 +76,9 @@ class JobStore {
   // None, of a job that is not there.
   virtual absl::StatusOr<std::vector<Grant>> GrantsOf(const JobId& id) = 0;
 
+  // How much room requests and results of an owner's jobs take; 0 where they end with the process.
+  virtual std::uint64_t StoredBytesOf(const std::string& /*owner*/) { return 0; }
+
   // Of a store that outlives the process. An ended state is shown once it is written, or cannot be written for now.
   virtual bool durable() const { return false; }
   // Get, after an ended state that came by Update is shown.

@@ -2,6 +2,7 @@
 #include "server/store/memory_scene_store.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "server/store/error.h"
@@ -20,7 +21,7 @@ absl::Status BadUpload(const std::string& reason, const std::string& message) {
 
 absl::StatusOr<std::uint64_t> MemorySceneStore::Upload(const std::string& owner, const std::string& sha256,
                                                        std::uint64_t total_bytes, std::uint64_t offset,
-                                                       std::string_view data) {
+                                                       std::string_view data, const std::optional<SceneRoom>& room) {
   if (!IsSha256(sha256)) return BadUpload("BAD_HASH", "sha256 must be 64 lower-case hexadecimal digits");
   if (total_bytes == 0 || total_bytes > limits_.max_scene_bytes) {
     return BadUpload("SCENE_TOO_BIG", "total_bytes is " + std::to_string(total_bytes) + "; allowed: 1 to " +
@@ -36,7 +37,7 @@ absl::StatusOr<std::uint64_t> MemorySceneStore::Upload(const std::string& owner,
                                             " bytes, not total_bytes = " + std::to_string(total_bytes));
     }
     if (data.empty() && uploads_.count({owner, sha256}) == 0) return std::uint64_t{0};
-    auto opened = OpenUpload({owner, sha256}, total_bytes);
+    auto opened = OpenUpload({owner, sha256}, total_bytes, room);
     if (!opened.ok()) return opened.status();
     upload = *opened;
   }
@@ -59,7 +60,7 @@ absl::StatusOr<std::uint64_t> MemorySceneStore::Upload(const std::string& owner,
     return BadUpload("TOO_MANY_BYTES", "data has " + std::to_string(data.size()) + " bytes; " +
                                            std::to_string(total_bytes - there) + " are missing");
   }
-  if (absl::Status room = Reserve(data.size()); !room.ok()) return room;
+  if (absl::Status reserved = Reserve({owner, sha256}, room, data.size()); !reserved.ok()) return reserved;
   upload->bytes->append(data);
   upload->hash.Add(data);
   if (upload->bytes->size() == total_bytes) return Complete({owner, sha256}, *upload);
@@ -67,11 +68,14 @@ absl::StatusOr<std::uint64_t> MemorySceneStore::Upload(const std::string& owner,
 }
 
 absl::StatusOr<std::shared_ptr<MemorySceneStore::PartialUpload>> MemorySceneStore::OpenUpload(
-    const UploadName& name, std::uint64_t total_bytes) {
+    const UploadName& name, std::uint64_t total_bytes, const std::optional<SceneRoom>& room) {
   const Clock::Time now = clock_.Now();
   if (const auto found = uploads_.find(name); found != uploads_.end()) {
     found->second->last_use = now;
     return found->second;
+  }
+  if (room) {
+    if (absl::Status fits = CheckRoom(name, *room, total_bytes); !fits.ok()) return fits;
   }
   if (scenes_.size() >= limits_.max_scenes) {
     return MakeQuotaError("TOO_MANY_SCENES", "max_scenes",
@@ -82,18 +86,12 @@ absl::StatusOr<std::shared_ptr<MemorySceneStore::PartialUpload>> MemorySceneStor
     const auto idlest = std::min_element(uploads_.begin(), uploads_.end(), [](const auto& a, const auto& b) {
       return a.second->last_use < b.second->last_use;
     });
-    const std::shared_ptr<PartialUpload> victim = idlest->second;
-    // One whose mutex is held elsewhere is in use, not idle.
-    const std::unique_lock lock(victim->mutex, std::try_to_lock);
-    if (!lock || now - victim->last_use < kIdle) {
+    if (now - idlest->second->last_use < kIdle || !GiveWay(idlest)) {
       return MakeQuotaError(
           "TOO_MANY_UPLOADS", "max_uploads",
           std::to_string(uploads_.size()) + " uploads are under way; allowed: " + std::to_string(limits_.max_uploads),
           kRetryAfter);
     }
-    victim->closed = true;
-    used_bytes_ -= victim->bytes->size();
-    uploads_.erase(idlest);
   }
   auto upload = std::make_shared<PartialUpload>();
   upload->total_bytes = total_bytes;
@@ -102,8 +100,57 @@ absl::StatusOr<std::shared_ptr<MemorySceneStore::PartialUpload>> MemorySceneStor
   return upload;
 }
 
-absl::Status MemorySceneStore::Reserve(std::uint64_t bytes) {
+bool MemorySceneStore::GiveWay(std::map<UploadName, std::shared_ptr<PartialUpload>>::iterator upload) {
+  const std::shared_ptr<PartialUpload> victim = upload->second;
+  // One whose mutex is held elsewhere is in use, not idle.
+  const std::unique_lock lock(victim->mutex, std::try_to_lock);
+  if (!lock) return false;
+  victim->closed = true;
+  used_bytes_ -= victim->bytes->size();
+  TakeBytes(upload->first.first, victim->bytes->size());
+  uploads_.erase(upload);
+  return true;
+}
+
+absl::Status MemorySceneStore::CheckRoom(const UploadName& name, const SceneRoom& room, std::uint64_t bytes) {
+  const std::string& owner = name.first;
+  const auto used = [&] {
+    const auto own = bytes_of_.find(owner);
+    return room.elsewhere + (own == bytes_of_.end() ? 0 : own->second);
+  };
+  const Clock::Time now = clock_.Now();
+  auto upload = uploads_.lower_bound({owner, ""});
+  while (used() + bytes > room.allowed && upload != uploads_.end() && upload->first.first == owner) {
+    const auto next = std::next(upload);
+    // (The upload itself is locked by its caller.)
+    if (upload->first != name && now - upload->second->last_use >= kIdle) GiveWay(upload);
+    upload = next;
+  }
+  if (used() + bytes <= room.allowed) return absl::OkStatus();
+  return StorageUsedUp(used(), room.allowed, bytes);
+}
+
+void MemorySceneStore::AddBytes(const std::string& owner, std::uint64_t bytes) { bytes_of_[owner] += bytes; }
+
+void MemorySceneStore::TakeBytes(const std::string& owner, std::uint64_t bytes) {
+  const auto own = bytes_of_.find(owner);
+  if (own == bytes_of_.end()) return;
+  own->second -= std::min(own->second, bytes);
+  if (own->second == 0) bytes_of_.erase(own);
+}
+
+std::uint64_t MemorySceneStore::BytesOf(const std::string& owner) {
   const std::lock_guard lock(mutex_);
+  const auto own = bytes_of_.find(owner);
+  return own == bytes_of_.end() ? 0 : own->second;
+}
+
+absl::Status MemorySceneStore::Reserve(const UploadName& name, const std::optional<SceneRoom>& room,
+                                       std::uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  if (room) {
+    if (absl::Status fits = CheckRoom(name, *room, bytes); !fits.ok()) return fits;
+  }
   if (used_bytes_ + bytes > limits_.max_total_bytes) {
     return MakeQuotaError("SCENE_STORE_FULL", "max_total_bytes",
                           "uploaded scenes hold " + std::to_string(used_bytes_) +
@@ -111,6 +158,7 @@ absl::Status MemorySceneStore::Reserve(std::uint64_t bytes) {
                           kRetryAfter);
   }
   used_bytes_ += bytes;
+  AddBytes(name.first, bytes);
   return absl::OkStatus();
 }
 
@@ -121,6 +169,7 @@ absl::StatusOr<std::uint64_t> MemorySceneStore::Complete(const UploadName& name,
   const std::lock_guard lock(mutex_);
   const std::uint64_t size = upload.bytes->size();
   uploads_.erase(name);
+  TakeBytes(owner, size);
   if (actual != sha256) {
     used_bytes_ -= size;
     upload.bytes.reset();
@@ -158,11 +207,13 @@ void MemorySceneStore::AddOwnerLocked(const std::string& owner, const std::strin
   auto& owned = owned_[owner];
   const std::uint64_t number = owned.empty() ? 1 : owned.rbegin()->first + 1;
   owned[number] = {sha256, title};
+  AddBytes(owner, entry->scene.bytes->size());
   entry->owners[owner] = {number};
 }
 
 void MemorySceneStore::ForgetOwned(const std::string& owner, std::uint64_t number) {
   const auto owned = owned_.find(owner);
+  TakeBytes(owner, Find(owned->second.at(number).sha256)->scene.bytes->size());
   owned->second.erase(number);
   if (owned->second.empty()) owned_.erase(owned);
 }

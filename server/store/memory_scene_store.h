@@ -26,8 +26,11 @@ class MemorySceneStore final : public SceneStore {
   };
   MemorySceneStore(const Limits& limits, const Clock& clock) : limits_(limits), clock_(clock) {}
 
+  using SceneStore::Upload;
   absl::StatusOr<std::uint64_t> Upload(const std::string& owner, const std::string& sha256, std::uint64_t total_bytes,
-                                       std::uint64_t offset, std::string_view data) override;
+                                       std::uint64_t offset, std::string_view data,
+                                       const std::optional<SceneRoom>& room) override;
+  std::uint64_t BytesOf(const std::string& owner) override;
   absl::StatusOr<StoredScene> Get(const std::string& sha256) override;
   bool Owns(const std::string& owner, const std::string& sha256) override;
   bool SetTitle(const std::string& reader, const std::string& sha256, const std::string& title) override;
@@ -71,9 +74,18 @@ class MemorySceneStore final : public SceneStore {
     std::string title;  // Empty until the owner has read the file.
   };
 
-  absl::StatusOr<std::shared_ptr<PartialUpload>> OpenUpload(const UploadName& name, std::uint64_t total_bytes)
+  absl::StatusOr<std::shared_ptr<PartialUpload>> OpenUpload(const UploadName& name, std::uint64_t total_bytes,
+                                                            const std::optional<SceneRoom>& room)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  absl::Status Reserve(std::uint64_t bytes);
+  // Of an owner's own room: whether `bytes` more of an upload fit, once its idle ones have given way.
+  absl::Status CheckRoom(const UploadName& name, const SceneRoom& room, std::uint64_t bytes)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Throws an unfinished upload away, unless it is in use.
+  bool GiveWay(std::map<UploadName, std::shared_ptr<PartialUpload>>::iterator upload)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::Status Reserve(const UploadName& name, const std::optional<SceneRoom>& room, std::uint64_t bytes);
+  void AddBytes(const std::string& owner, std::uint64_t bytes) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void TakeBytes(const std::string& owner, std::uint64_t bytes) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::StatusOr<std::uint64_t> Complete(const UploadName& name, PartialUpload& upload);
   Entry* Find(const std::string& sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   Ownership* FindOwnership(const std::string& owner, const std::string& sha256) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -93,6 +105,7 @@ class MemorySceneStore final : public SceneStore {
   std::unordered_map<std::string, std::map<std::uint64_t, Owned>> owned_
       ABSL_GUARDED_BY(mutex_);  // The same, by owner.
   std::map<UploadName, std::shared_ptr<PartialUpload>> uploads_ ABSL_GUARDED_BY(mutex_);
+  std::unordered_map<std::string, std::uint64_t> bytes_of_ ABSL_GUARDED_BY(mutex_);  // By owner; none of 0.
 };
 
 }  // namespace flatlight

@@ -29,6 +29,12 @@ struct ScenePage {
   std::optional<std::uint64_t> next_before;  // Where the next page begins; absent on the last page.
 };
 
+// How much room one's uploads have: `allowed` bytes, of which `elsewhere` are used for something else.
+struct SceneRoom {
+  std::uint64_t allowed = 0;
+  std::uint64_t elsewhere = 0;
+};
+
 // Uploaded scene files, by the hash of their bytes, and who uploaded them. The bytes are kept once. No answer to one
 // user depends on what others have uploaded, as long as there is room. Safe to use from any thread.
 class SceneStore {
@@ -38,10 +44,17 @@ class SceneStore {
   // Appends a piece to an upload of `owner` and returns how many of its bytes are there. Empty `data` only asks.
   // `offset` must be that number (OUT_OF_RANGE says what it is). The last piece completes the scene; if the bytes do
   // not have the hash, they are thrown away (INVALID_ARGUMENT). Of a scene that it has uploaded already all bytes are
-  // there.
+  // there. RESOURCE_EXHAUSTED where the owner's `room` does not suffice, if there is an end of it; uploads of its own
+  // that are unfinished and idle give way.
   virtual absl::StatusOr<std::uint64_t> Upload(const std::string& owner, const std::string& sha256,
-                                               std::uint64_t total_bytes, std::uint64_t offset,
-                                               std::string_view data) = 0;
+                                               std::uint64_t total_bytes, std::uint64_t offset, std::string_view data,
+                                               const std::optional<SceneRoom>& room) = 0;
+  absl::StatusOr<std::uint64_t> Upload(const std::string& owner, const std::string& sha256, std::uint64_t total_bytes,
+                                       std::uint64_t offset, std::string_view data) {
+    return Upload(owner, sha256, total_bytes, offset, data, std::nullopt);
+  }
+  // Of all scenes and unfinished uploads of an owner, whoever else has them.
+  virtual std::uint64_t BytesOf(const std::string& owner) = 0;
   // Whoever has it. NOT_FOUND.
   virtual absl::StatusOr<StoredScene> Get(const std::string& sha256) = 0;
   virtual bool Owns(const std::string& owner, const std::string& sha256) = 0;
@@ -75,6 +88,8 @@ class SceneStore {
 
 // NOT_FOUND.
 absl::Status NoSuchScene(const std::string& sha256);
+// RESOURCE_EXHAUSTED: of what one user may store, so much is used; `more` bytes were wanted (0: any).
+absl::Status StorageUsedUp(std::uint64_t used, std::uint64_t allowed, std::uint64_t more);
 
 }  // namespace flatlight
 

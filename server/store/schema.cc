@@ -140,6 +140,17 @@ CREATE TRIGGER scene_owners_drop_grants AFTER DELETE ON scene_owners BEGIN
 END;
 )sql";
 
+// What users have had: see CpuLedger. Of jobs: how much room their requests and results take; null: not measured yet.
+constexpr char kQuotas[] = R"sql(
+CREATE TABLE cpu_days(
+  user TEXT NOT NULL,
+  day INTEGER NOT NULL,  -- Of UTC, since 1970.
+  seconds REAL NOT NULL,
+  PRIMARY KEY(user, day)
+) WITHOUT ROWID;
+ALTER TABLE jobs ADD COLUMN stored_bytes INTEGER;
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -150,8 +161,8 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs,  kScenes,      kUsers,       kPauses,     kGrants,
-                                                       kRooms, kSceneOwners, kJobsByOwner, kSceneGrants};
+  static const std::vector<std::string> kMigrations = {kJobs,  kScenes,      kUsers,       kPauses, kGrants,
+                                                       kRooms, kSceneOwners, kJobsByOwner, kQuotas, kSceneGrants};
   return kMigrations;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -115,6 +116,20 @@ absl::StatusOr<Blob> Storage::Prepare(std::string sha256, std::shared_ptr<const 
     if (absl::Status written = files_.Write(blob.sha256, *blob.bytes); !written.ok()) return written;
   }
   return blob;
+}
+
+std::uint64_t Storage::SizeOf(const std::string& sha256) {
+  std::optional<std::int64_t> in_line;
+  const absl::Status read = Read([&](Database& database) -> absl::Status {
+    Statement blob = database.Prepare("SELECT length(bytes) FROM blobs WHERE sha256 = ? AND bytes IS NOT NULL");
+    const auto row = blob.Bind(std::string_view(sha256)).Step();
+    if (row.ok() && *row) in_line = blob.Integer(0);
+    return row.status();
+  });
+  if (!read.ok()) return 0;
+  if (in_line) return static_cast<std::uint64_t>(*in_line);
+  struct stat file {};
+  return stat(files_.PathOf(sha256).c_str(), &file) == 0 ? static_cast<std::uint64_t>(file.st_size) : 0;
 }
 
 absl::StatusOr<std::string> Storage::Fetch(const std::string& sha256) {

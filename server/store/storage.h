@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_SERVER_STORE_STORAGE_H_
 #define FLATLIGHT_SERVER_STORE_STORAGE_H_
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -56,6 +57,9 @@ class Storage {
   absl::StatusOr<Blob> Prepare(std::string sha256, std::shared_ptr<const std::string> bytes);
   // Checked against its hash.
   absl::StatusOr<std::string> Fetch(const std::string& sha256);
+
+  // How many bytes it has; 0 if it is missing.
+  std::uint64_t SizeOf(const std::string& sha256);
 
   const std::string& folder() const { return folder_; }
   static std::string DatabasePath(const std::string& folder) { return folder + "/flatlight.db"; }

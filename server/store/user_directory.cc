@@ -24,6 +24,16 @@ absl::Status UserDirectory::ForgetWhatChanged() {
   return absl::OkStatus();
 }
 
+absl::StatusOr<std::optional<Role>> UserDirectory::FindRole(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  return UserStore(*database_).FindRole(name);
+}
+
+std::int64_t UserDirectory::Version() {
+  const std::lock_guard lock(mutex_);
+  return ForgetWhatChanged().ok() ? version_ : --unreadable_;
+}
+
 absl::StatusOr<bool> UserDirectory::HasUsers() {
   const std::lock_guard lock(mutex_);
   if (has_users_ == true) return true;

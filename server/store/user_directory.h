@@ -27,6 +27,10 @@ class UserDirectory {
   absl::StatusOr<bool> HasUsers();
   // As UserStore::FindByTokenHash.
   absl::StatusOr<User> FindByTokenHash(const std::string& token_sha256);
+  // As UserStore::FindRole; not remembered.
+  absl::StatusOr<std::optional<Role>> FindRole(const std::string& name);
+  // Another number whenever anything in the database may have been changed, and when it cannot be read.
+  std::int64_t Version();
 
  private:
   // More than a class and its staff: then all of it is forgotten.
@@ -38,6 +42,7 @@ class UserDirectory {
   const std::unique_ptr<Database> database_ ABSL_PT_GUARDED_BY(mutex_);
   Statement version_query_ ABSL_GUARDED_BY(mutex_);
   std::int64_t version_ ABSL_GUARDED_BY(mutex_) = -1;
+  std::int64_t unreadable_ ABSL_GUARDED_BY(mutex_) = -1;
   std::optional<bool> has_users_ ABSL_GUARDED_BY(mutex_);
   std::unordered_map<std::string, User> by_token_hash_ ABSL_GUARDED_BY(mutex_);
 };

@@ -148,6 +148,14 @@ absl::StatusOr<User> UserStore::FindByTokenHash(const std::string& token_sha256)
   return User{rows.Bytes(0), RoleOf(rows.Bytes(1)).value_or(Role::kStudent), *std::move(groups), false};
 }
 
+absl::StatusOr<std::optional<Role>> UserStore::FindRole(const std::string& name) {
+  Statement rows = database_.Prepare("SELECT role FROM users WHERE name = ?");
+  const auto row = rows.Bind(std::string_view(name)).Step();
+  if (!row.ok()) return row.status();
+  if (!*row) return std::optional<Role>();
+  return RoleOf(rows.Bytes(0));
+}
+
 absl::StatusOr<bool> UserStore::HasUsers() { return database_.Prepare("SELECT 1 FROM users LIMIT 1").Step(); }
 
 }  // namespace flatlight

@@ -53,6 +53,8 @@ class UserStore {
   // UNAUTHENTICATED with TOKEN_INVALID.
   absl::StatusOr<User> Authenticate(std::string_view token);
   absl::StatusOr<User> FindByTokenHash(const std::string& token_sha256);  // In lower-case hexadecimal.
+  // Of a user, revoked or not; nothing if there is none of that name.
+  absl::StatusOr<std::optional<Role>> FindRole(const std::string& name);
   // Whether there have ever been users: revoking the last one opens nothing to strangers.
   absl::StatusOr<bool> HasUsers();
 

@@ -6,13 +6,13 @@ import subprocess
 
 
 class Daemon:
-    def __init__(self, program, token=None, listen="127.0.0.1:0", arguments=()):
-        environment = dict(os.environ)
+    def __init__(self, program, token=None, listen="127.0.0.1:0", arguments=(), environment=None, prefix=()):
+        environment = {**os.environ, **(environment or {})}
         environment.pop("FLATLIGHT_TOKEN", None)
         if token:
             environment["FLATLIGHT_TOKEN"] = token
         # It ends with its standard input, so also when this process is killed.
-        self.process = subprocess.Popen([program, "--listen", listen, "--threads", "2", "--exit-with-parent",
+        self.process = subprocess.Popen([*prefix, program, "--listen", listen, "--threads", "2", "--exit-with-parent",
                                          *arguments],
                                         stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
 

@@ -24,6 +24,7 @@ std::string Right(const std::string& text, std::size_t width) {
 std::string Count(double value) { return FormatCount(value); }
 
 std::string StateText(const v1::Job& job) {
+  if (job.queue().reason() == v1::QueuePlace::DAY_USED_UP) return "tomorrow";
   if (job.state() == v1::Job::QUEUED && job.has_queue()) return Count(job.queue().ahead()) + " ahead";
   return OptionName(job.state());
 }

@@ -21,6 +21,7 @@ CommandResult RunCommand(const CommandLine& line, Interruption& interruption) {
       {"jobs", Jobs},
       {"top", Top},
       {"health", Health},
+      {"quota", ShowQuotas},
       {"show", Show},
       {"fetch", Fetch},
       {"cancel", Cancel},

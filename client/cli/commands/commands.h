@@ -52,6 +52,9 @@ CommandResult DeleteRoom(const CommandLine& line, Interruption& interruption);
 // top_command.cc
 CommandResult Top(const CommandLine& line, Interruption& interruption);
 
+// quota_command.cc
+CommandResult ShowQuotas(const CommandLine& line, Interruption& interruption);
+
 // health_command.cc
 CommandResult Health(const CommandLine& line, Interruption& interruption);
 

@@ -2,6 +2,7 @@
 #include "client/cli/commands/session.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -47,7 +48,11 @@ absl::StatusOr<std::unique_ptr<Session>> Session::Open(const CommandLine& line, 
     auto own = PrivateServer::Start(line.settings.threads());
     if (!own.ok()) return own.status();
     session->server_ = *std::move(own);
-    if (absl::Status ready = session->server_->WaitUntilReady(interruption); !ready.ok()) return ready;
+    const auto tell_slow = [&line] {
+      if (!line.quiet)
+        std::fputs("flatlight: its own server is slow to start; waiting as long as it gets on\n", stderr);
+    };
+    if (absl::Status ready = session->server_->WaitUntilReady(interruption, tell_slow); !ready.ok()) return ready;
     auto address = ParseServerAddress(session->server_->address(), "TMPDIR");
     if (!address.ok()) return address.status();
     *server = ServerChoice{*std::move(address), Tls()};

@@ -32,8 +32,8 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kStartPatience{10};
 constexpr std::chrono::duration<int, std::milli> kStopPatience{4000};  // The server's own is 3 s.
+constexpr milliseconds kLook{100};                                     // From one look at how it gets on to the next.
 constexpr std::uint32_t kMostThreads = 1024;                           // That flatlightd accepts.
 constexpr const char* kTokenVariable = "FLATLIGHT_TOKEN";
 
@@ -148,15 +148,30 @@ absl::Status PrivateServer::Spawn(std::uint32_t threads) {
   return Failed(program_ + ": " + std::strerror(error));
 }
 
-absl::Status PrivateServer::WaitUntilReady(Interruption& interruption) {
-  const auto deadline = steady_clock::now() + kStartPatience;
-  while (!Connects(socket_)) {
+absl::Status PrivateServer::WaitUntilReady(Interruption& interruption, const std::function<void()>& tell_slow) {
+  const steady_clock::time_point start = steady_clock::now();
+  StartupWatch watch(start);
+  for (steady_clock::time_point next_look = start; !Connects(socket_);) {
     if (absl::Status status = CheckAlive(); !status.ok()) return status;
-    if (steady_clock::now() > deadline)
-      return Failed("it did not listen within " + std::to_string(kStartPatience.count()) + " s");
+    if (const steady_clock::time_point now = steady_clock::now(); now >= next_look) {
+      next_look = now + kLook;
+      const StartupWatch::Verdict verdict = watch.Look(now, ReadActivity(child_));
+      if (verdict != StartupWatch::Verdict::kGoesOn) return NotListening(verdict, now - start);
+      if (watch.WorthTelling(now)) tell_slow();
+    }
     if (!interruption.Sleep(milliseconds(1))) return absl::CancelledError("interrupted");
   }
   return absl::OkStatus();
+}
+
+absl::Status PrivateServer::NotListening(StartupWatch::Verdict verdict, steady_clock::duration waited) const {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(waited).count();
+  std::string what = "after " + std::to_string(seconds) + " s " + program_ + " does not listen";
+  what += verdict == StartupWatch::Verdict::kIdle
+              ? ", and has done nothing for " + std::to_string(StartupWatch::kIdlePatience.count()) + " s"
+              : ", though it works";
+  const std::string log = LastLines(log_);
+  return Failed(log.empty() ? what : what + "\n" + log);
 }
 
 absl::Status PrivateServer::CheckAlive() {

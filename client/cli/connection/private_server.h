@@ -5,12 +5,15 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "client/cli/connection/interruption.h"
+#include "client/cli/connection/startup_watch.h"
 
 namespace flatlight {
 
@@ -26,7 +29,9 @@ class PrivateServer {
   PrivateServer(const PrivateServer&) = delete;
   PrivateServer& operator=(const PrivateServer&) = delete;
 
-  absl::Status WaitUntilReady(Interruption& interruption);
+  // However long that takes on a busy machine, as long as the server gets on: UNAVAILABLE once it has ended, or done
+  // nothing for StartupWatch::kIdlePatience. Calls `tell_slow` if it takes long, once.
+  absl::Status WaitUntilReady(Interruption& interruption, const std::function<void()>& tell_slow);
 
   std::string address() const { return "unix:" + socket_; }
   const std::string& token() const { return token_; }
@@ -38,6 +43,7 @@ class PrivateServer {
  private:
   PrivateServer(std::string program, std::string folder, std::string token);
   absl::Status Spawn(std::uint32_t threads);
+  absl::Status NotListening(StartupWatch::Verdict verdict, std::chrono::steady_clock::duration waited) const;
   void Stop();
 
   std::string program_;

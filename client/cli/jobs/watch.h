@@ -17,7 +17,7 @@ struct WatchOptions {
   double max_rate = 10;               // Updates a second.
   bool cancel_on_disconnect = false;  // The server cancels the job when it loses the watch.
   // A stream that breaks is taken up again where it ended, for as long as no more than this passes without a message.
-  std::chrono::milliseconds patience = std::chrono::seconds(30);
+  std::chrono::milliseconds patience = std::chrono::seconds(120);
   std::chrono::milliseconds silence = std::chrono::seconds(25);  // Heartbeats come every 10 s.
   // With the newest state, never going back; an error ends the watch. May be empty, as the next ones.
   std::function<absl::Status(const v1::Job&)> on_update;

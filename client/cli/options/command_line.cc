@@ -249,6 +249,8 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   CLI::App& top = AddCommand(app, "top", "show what a server does: jobs, users, rates", kTopHelp);
   top.add_flag("--once", raw.line.once, "show it once, in plain text");
   AddJson(top, raw, "the activity");
+  CLI::App& quota = AddCommand(app, "quota", "show what you may have of a server, and what you have", kQuotaHelp);
+  AddJson(quota, raw, "the same");
   CLI::App& health = AddCommand(app, "health", "ask a server whether it serves; needs no token", kHealthHelp);
   AddQuiet(health, raw);
   AddServer(health, raw);
@@ -269,7 +271,7 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
     AddQuiet(control, raw);
     AddServer(control, raw);
   }
-  for (CLI::App* command : {&watch, &jobs, &top, &show, &fetch}) AddServer(*command, raw);
+  for (CLI::App* command : {&watch, &jobs, &top, &quota, &show, &fetch}) AddServer(*command, raw);
   AddSharing(app, raw);
 }
 

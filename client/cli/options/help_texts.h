@@ -59,6 +59,10 @@ inline constexpr char kJobHelp[] = R"(JOB is jobs/UUID, a UUID, or the beginning
 inline constexpr char kTopHelp[] =
     R"(On a terminal it stays, and shows the state of every second; Ctrl-C ends it. Elsewhere it shows one state.)";
 
+inline constexpr char kQuotaHelp[] =
+    R"(What is over a limit is refused, with exit status 4 and when to try again. Jobs of who has used up the processor time of a
+day rest, and go on by themselves at 00:00 UTC.)";
+
 inline constexpr char kHealthHelp[] =
     R"(For health checks of containers and the like: exit status 0 if the server says that it serves, 3 if it says that it does
 not, as while it is ending, or says nothing for 3 s.)";

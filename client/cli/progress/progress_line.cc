@@ -44,6 +44,10 @@ std::string Details(const v1::Job& job) {
 
 std::string QueueText(const v1::Job& job) {
   if (!job.has_queue()) return "waiting for its turn";
+  if (job.queue().reason() == v1::QueuePlace::DAY_USED_UP) {
+    return "rests: today's processor time is used up; goes on in " +
+           FormatSeconds(std::max(0.0, SecondsOf(job.queue().expected_start()) - SecondsNow()));
+  }
   std::string text = job.queue().reason() == v1::QueuePlace::OWN_JOBS ? "waiting for jobs of the same owner"
                                                                       : "waiting: the server is full";
   text += ", " + (job.queue().ahead() > 0 ? FormatExactly(job.queue().ahead()) + " ahead" : std::string("next"));

@@ -8,7 +8,7 @@
 namespace flatlight {
 namespace {
 
-constexpr std::chrono::seconds kPatience{30};
+constexpr std::chrono::seconds kPatience{120};
 constexpr std::chrono::seconds kSilence{25};  // Heartbeats come every 10 s.
 
 class Watch {

@@ -18,7 +18,7 @@ struct RoomWatchOptions {
   std::function<absl::Status()> on_new_epoch;
 };
 
-// A stream that breaks is taken up again where it ended, for 30 s without a message. INTERRUPTED after a signal.
+// A stream that breaks is taken up again where it ended, for 120 s without a message. INTERRUPTED after a signal.
 absl::Status WatchRoom(Connection& connection, const std::string& name, const RoomWatchOptions& options);
 
 }  // namespace flatlight

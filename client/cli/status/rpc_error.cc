@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/status/rpc_error.h"
 
+#include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "google/rpc/error_details.pb.h"
@@ -13,19 +15,32 @@ void AddLine(const std::string& place, const std::string& description, std::stri
   lines += place.empty() ? description : place + ": " + description;
 }
 
+// "12 s", "57 min", "5 h": rounded up, so that who waits as long has waited long enough.
+std::string TimeText(const google::protobuf::Duration& duration) {
+  const double seconds = static_cast<double>(duration.seconds()) + 1e-9 * duration.nanos();
+  const auto whole = [](double value) { return std::to_string(static_cast<std::int64_t>(std::ceil(value))); };
+  if (seconds <= 120) return whole(seconds) + " s";
+  if (seconds <= 7200) return whole(seconds / 60) + " min";
+  return whole(seconds / 3600) + " h";
+}
+
 std::string Violations(const google::rpc::Status& status) {
   std::string lines;
+  std::string retry;
   for (const google::protobuf::Any& detail : status.details()) {
     google::rpc::BadRequest bad_request;
     google::rpc::QuotaFailure quota;
+    google::rpc::RetryInfo retry_info;
     if (detail.UnpackTo(&bad_request)) {
       for (const auto& violation : bad_request.field_violations())
         AddLine(violation.field(), violation.description(), lines);
     } else if (detail.UnpackTo(&quota)) {
       for (const auto& violation : quota.violations()) AddLine(violation.subject(), violation.description(), lines);
+    } else if (detail.UnpackTo(&retry_info)) {
+      retry = " (try again in " + TimeText(retry_info.retry_delay()) + ")";
     }
   }
-  return lines;
+  return lines.empty() ? lines : lines + retry;
 }
 
 // DATA_LOSS means an output of ours that could not be written; a server that reports it has failed.

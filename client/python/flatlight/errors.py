@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of the client: what went wrong, where, and the server's reason for programs."""
+import math
+
 import grpc
 from google.rpc import error_details_pb2, status_pb2
 
@@ -13,13 +15,15 @@ _DETAILS = "grpc-status-details-bin"
 
 class Error(Exception):
     """A refused or failed call. `reason` is UPPER_SNAKE_CASE ("" if the server was not reached), `code` the
-    grpc.StatusCode, `mistakes` a list of (path, description), of a scene or settings that are wrong."""
+    grpc.StatusCode, `mistakes` a list of (path, description), of a scene or settings that are wrong, `retry_after` the
+    seconds after which the same may succeed (None if the server says none)."""
 
-    def __init__(self, message, code=grpc.StatusCode.UNKNOWN, reason="", mistakes=()):
+    def __init__(self, message, code=grpc.StatusCode.UNKNOWN, reason="", mistakes=(), retry_after=None):
         super().__init__(message)
         self.code = code
         self.reason = reason
         self.mistakes = list(mistakes)
+        self.retry_after = retry_after
 
 
 class BadRequest(Error):
@@ -55,21 +59,29 @@ _KINDS = {
 def error_of(rpc_error, address):
     """The Error that a grpc.RpcError of a call to `address` stands for."""
     code = rpc_error.code()
-    reason, mistakes = "", []
+    reason, mistakes, retry_after = "", [], None
     for key, value in rpc_error.trailing_metadata() or ():
         if key == _DETAILS:
-            reason, mistakes = _details(value)
+            reason, mistakes, retry_after = _details(value)
     message = "\n".join(f"{path}: {description}" for path, description in mistakes) or rpc_error.details()
     if code == grpc.StatusCode.UNAVAILABLE and not reason:
         message = f"cannot reach the server at {address}: {rpc_error.details()}"
     elif code == grpc.StatusCode.DEADLINE_EXCEEDED:
         message = f"the server at {address} did not answer in time"
-    return _KINDS.get(code, Error)(message, code, reason, mistakes)
+    elif code == grpc.StatusCode.RESOURCE_EXHAUSTED and retry_after is not None:
+        message += f" (try again in {_time_text(retry_after)})"
+    return _KINDS.get(code, Error)(message, code, reason, mistakes, retry_after)
+
+
+def _time_text(seconds):
+    if seconds <= 120:
+        return f"{math.ceil(seconds)} s"
+    return f"{math.ceil(seconds / 60)} min" if seconds <= 7200 else f"{math.ceil(seconds / 3600)} h"
 
 
 def _details(serialised):
-    reason, mistakes = "", []
-    info, bad_request = ErrorInfo(), error_details_pb2.BadRequest()
+    reason, mistakes, retry_after = "", [], None
+    info, bad_request, retry = ErrorInfo(), error_details_pb2.BadRequest(), error_details_pb2.RetryInfo()
     for detail in status_pb2.Status.FromString(serialised).details:
         if detail.Is(info.DESCRIPTOR):
             detail.Unpack(info)
@@ -77,4 +89,7 @@ def _details(serialised):
         elif detail.Is(bad_request.DESCRIPTOR):
             detail.Unpack(bad_request)
             mistakes += [(violation.field, violation.description) for violation in bad_request.field_violations]
-    return reason, mistakes
+        elif detail.Is(retry.DESCRIPTOR):
+            detail.Unpack(retry)
+            retry_after = retry.retry_delay.seconds + 1e-9 * retry.retry_delay.nanos
+    return reason, mistakes, retry_after

@@ -106,7 +106,7 @@ class Watch:
     stream is begun anew (heartbeats come every 10 s). cancel_on_disconnect: the server cancels the job when it loses this
     watch before the end, be it that you leave it, that the program ends, or that the connection breaks."""
 
-    def __init__(self, client, name, *, max_rate=10, patience=30, silence=25, cancel_on_disconnect=False):
+    def __init__(self, client, name, *, max_rate=10, patience=120, silence=25, cancel_on_disconnect=False):
         self._client = client
         self._request = render_service_pb2.WatchJobRequest(name=name, max_rate=max_rate,
                                                            cancel_on_disconnect=cancel_on_disconnect)

@@ -186,7 +186,7 @@ template <int kChannels>
 bool ExactSolver::AddView(const Receiver& receiver, ExactValue& value) {
   LightSum<kChannels> sum(scene_, options_, receiver, value);
   const bool slits = triangulation_->has_slits();
-  const bool decided = view_->Walk(receiver, [&](const ViewLimit& limit, Gate gate) {
+  const bool decided = view_->Walk(receiver, [&](std::uint32_t vertex, Gate gate) {
     Spectrum after;
     if (gate == Triangulation::kNothing) {
       after = scene_.environment();
@@ -199,32 +199,35 @@ bool ExactSolver::AddView(const Receiver& receiver, ExactValue& value) {
       }
     }
     if (slits) [[unlikely]]
-      AddSlit<kChannels>(limit, receiver, value);
+      AddSlit<kChannels>(vertex, receiver, value);
     if (!sum.Changes(after)) return;
-    if (limit.vertex == ViewLimit::kHorizon) {
-      sum.Next() = HorizonEdge(Dot(receiver.tangent, {limit.x, limit.y}) > 0 ? 1 : -1);
+    if (vertex == ViewLimit::kHorizon) {
+      sum.Next() = HorizonEdge(gate == Triangulation::kHorizon ? 1 : -1);
       sum.Turn(after);
     } else {
-      const Vector2 to{limit.x, limit.y};
-      SetVertexEdge(Dot(receiver.tangent, to), Dot(receiver.normal, to), triangulation_->vertices()[limit.vertex],
-                    sum.Next());
-      sum.Turn(after, triangulation_->Uncertain(limit.vertex) + receiver.displaced);
+      SetEdgeAt(vertex, receiver, sum.Next());
+      sum.Turn(after, triangulation_->Uncertain(vertex) + receiver.displaced);
     }
   });
   if (!decided) value = ExactValue();
   return decided;
 }
 
+void ExactSolver::SetEdgeAt(std::uint32_t vertex, const Receiver& receiver, Edge& edge) const {
+  const Point2 place = triangulation_->vertices()[vertex];
+  const Vector2 to = place - receiver.position;
+  SetVertexEdge(Dot(receiver.tangent, to), Dot(receiver.normal, to), place, edge);
+}
+
 template <int kChannels>
-[[gnu::noinline]] void ExactSolver::AddSlit(const ViewLimit& limit, const Receiver& receiver, ExactValue& value) const {
-  if (limit.vertex == ViewLimit::kHorizon) return;
-  const double slit = triangulation_->Slit(limit.vertex);
+[[gnu::noinline]] void ExactSolver::AddSlit(std::uint32_t vertex, const Receiver& receiver, ExactValue& value) const {
+  if (vertex == ViewLimit::kHorizon) return;
+  const double slit = triangulation_->Slit(vertex);
   if (slit == 0) return;
   // Between places that are both that near to the vertex, or of an end that reaches beyond it: at most twice what one
   // place so far off changes, which the bound is twice of.
   Edge edge;
-  const Vector2 to{limit.x, limit.y};
-  SetVertexEdge(Dot(receiver.tangent, to), Dot(receiver.normal, to), triangulation_->vertices()[limit.vertex], edge);
+  SetEdgeAt(vertex, receiver, edge);
   const EdgeErrors errors = BoundErrors(edge, receiver.curvature, slit);
   for (int channel = 0; channel < kChannels; ++channel) {
     // Where radiance is summed up by angle, and in rotation, no cosine makes it less.

@@ -81,7 +81,9 @@ class ExactSolver {
   bool AddView(const Receiver& receiver, ExactValue& value);
   // The light that may be left out, or put in, beside a vertex of the triangulation.
   template <int kChannels>
-  void AddSlit(const ViewLimit& limit, const Receiver& receiver, ExactValue& value) const;
+  void AddSlit(std::uint32_t vertex, const Receiver& receiver, ExactValue& value) const;
+  // The edge at a vertex of the triangulation, above the horizon.
+  void SetEdgeAt(std::uint32_t vertex, const Receiver& receiver, Edge& edge) const;
   template <int kChannels>
   void AddEnvelope(const Envelope& envelope, const Receiver& receiver, ExactValue& value) const;
   template <int kChannels>

@@ -31,24 +31,40 @@ class View {
   // Both must outlive it.
   View(const Scene& scene, const Triangulation& triangulation);
 
-  // Calls visit(limit, gate) for all walls that are seen, in the order of theta (see Edge): from the limit on, up to
-  // the next call's, `gate` is seen: a wall, kNothing, or, in the last call, kHorizon. False if a direction or a place
-  // cannot be decided to the accuracy of the coordinates, or if many slits let so many beams through the same triangles
-  // that another way is faster; what was visited then does not count.
+  // Calls visit(vertex, gate) for all walls that are seen, in the order of theta (see Edge): from the direction to the
+  // vertex on, up to the next call's, `gate` is seen: a wall, or kNothing. The first call has the horizon for a vertex,
+  // as has the last, of which the gate is kHorizon. False, and nothing is visited, if a direction or a place cannot be
+  // decided to the accuracy of the coordinates, or if many slits let so many beams through the same triangles that
+  // another way is faster.
   template <typename Visit>
   bool Walk(const Receiver& receiver, const Visit& visit) {
-    if (!Open(receiver)) return false;
-    return clockwise_ ? WalkInOrder<true>(receiver, visit) : WalkInOrder<false>(receiver, visit);
+    if (!Find(receiver)) return false;
+    std::uint32_t low = ViewLimit::kHorizon;
+    for (std::uint32_t i = 0; i != kNoStretch; i = stretches_[i].next) {
+      visit(low, stretches_[i].gate);
+      low = stretches_[i].high;
+    }
+    visit(low, Triangulation::kHorizon);
+    return true;
   }
 
   // Triangles entered so far.
   double steps() const { return steps_; }
 
  private:
-  // What is seen through a gate, up to its higher limit.
-  struct Opening {
+  static constexpr std::uint32_t kNoStretch = 0xffffffff;
+  // What is seen from the stretch before up to a vertex: behind the gate, in the end a wall.
+  struct Stretch {
+    std::uint32_t high;
+    Gate gate;
+    std::uint32_t next;  // The stretch that begins there; those that follow the first make up all that is seen.
+  };
+  // A stretch of which the walls are still to be found.
+  struct Beam {
+    ViewLimit low;
     ViewLimit high;
     Gate gate;
+    std::uint32_t stretch;
   };
   // A corner of the polygon around the receiver that the walk begins with, and the gate through the edge that follows,
   // counter-clockwise.
@@ -58,6 +74,8 @@ class View {
     Gate gate;
   };
 
+  // Finds the stretches.
+  bool Find(const Receiver& receiver);
   // Finds the gates around the receiver that lead above its horizon.
   bool Open(const Receiver& receiver);
   bool OpenAround(const Receiver& receiver, const Corner* corners, int count);
@@ -70,9 +88,12 @@ class View {
   // one, 0 if that is uncertain.
   int Side(const ViewLimit& limit, const ViewLimit& vertex, double cross) const;
 
-  template <bool kClockwise, typename Visit>
-  bool WalkInOrder(const Receiver& receiver, const Visit& visit);
-  void Grow() { stack_.resize(2 * stack_.size()); }
+  // Puts a stretch, and the beam that looks for its walls, after all others.
+  void Append(const ViewLimit& low, const ViewLimit& high, Gate gate);
+  void MakeRoom();
+  // Follows the beams from triangle to triangle, to walls.
+  template <bool kClockwise>
+  bool Follow(Point2 position);
 
   const Scene& scene_;
   const Triangulation& triangulation_;
@@ -81,63 +102,13 @@ class View {
   const double doubt_;  // Doubt(a, b) is never more.
   const double most_steps_;
   bool clockwise_ = false;
-  ViewLimit low_;               // Of the first opening.
-  std::vector<Opening> stack_;  // The next one last.
-  std::size_t size_ = 0;
+  // With room for more than there are.
+  std::vector<Stretch> stretches_;
+  std::vector<Beam> beams_;
+  std::size_t stretch_count_ = 0;
+  std::size_t beam_count_ = 0;
   double steps_ = 0;
 };
-
-template <bool kClockwise, typename Visit>
-bool View::WalkInOrder(const Receiver& receiver, const Visit& visit) {
-  const std::uint32_t* const triangles = triangulation_.triangles().data()->vertex;
-  const Point2* const vertices = triangulation_.vertices().data();
-  // Beside the opposite vertex stand the gates through the edges on its left and on its right.
-  constexpr int kLow = kClockwise ? 5 : 4, kHigh = kClockwise ? 4 : 5;
-  const Point2 position = receiver.position;
-  const double doubt = doubt_;
-  ViewLimit low = low_;
-  std::size_t size = size_, steps = 0;
-  while (size > 0) {
-    const Opening& opening = stack_[--size];
-    double high_x = opening.high.x, high_y = opening.high.y;
-    std::uint32_t high_vertex = opening.high.vertex;
-    Gate gate = opening.gate;
-    while (gate < Triangulation::kWall) {
-      const std::uint32_t* const place = triangles + gate;
-      const Gate to_low = place[kLow], to_high = place[kHigh];
-      const std::uint32_t apex = *place;
-      const double x = vertices[apex].x - position.x, y = vertices[apex].y - position.y;
-      // Positive where the apex is on the inner side of a limit.
-      double from_low = low.x * y - low.y * x, to_limit = x * high_y - y * high_x;
-      if constexpr (kClockwise) from_low = -from_low, to_limit = -to_limit;
-      ++steps;
-      if (std::min(std::abs(from_low), std::abs(to_limit)) <= doubt) [[unlikely]] {
-        from_low = Side(low, {x, y, apex}, from_low);
-        to_limit = Side({high_x, high_y, high_vertex}, {x, y, apex}, to_limit);
-        if (from_low == 0 || to_limit == 0) return false;
-      }
-      if (from_low < 0) {
-        gate = to_high;
-      } else if (to_limit < 0) {
-        gate = to_low;
-      } else {
-        if (size == stack_.size()) Grow();
-        stack_[size++] = {{high_x, high_y, high_vertex}, to_high};
-        __builtin_prefetch(triangles + (to_high < Triangulation::kWall ? to_high : 0));
-        high_x = x, high_y = y, high_vertex = apex, gate = to_low;
-      }
-    }
-    if (gate == Triangulation::kShared || static_cast<double>(steps) > most_steps_) {
-      steps_ += static_cast<double>(steps);
-      return false;
-    }
-    visit(low, gate);
-    low = {high_x, high_y, high_vertex};
-  }
-  visit(low, Triangulation::kHorizon);
-  steps_ += static_cast<double>(steps);
-  return true;
-}
 
 }  // namespace flatlight
 

@@ -94,6 +94,38 @@ class UsersTest(CliCase):
             self.assertIn("--delete", self.as_user(ada, "scenes", "--delete", status=2).stderr)
             self.assertIn("excludes", self.as_user(ada, "scenes", "--mine", "--shared", status=2).stderr)
 
+    def test_quotas_are_shown_and_refusals_say_when_to_try_again(self):
+        quotas = ("--quota", "student.jobs=1", "--quota", "student.cpu-seconds=5400", "--quota", "student.requests=0.01")
+        arguments = ("--data", self.path("data"), *quotas)
+        with Daemon(FLATLIGHTD, arguments=arguments[:6]) as daemon:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            tokens = self.tokens("ada") | self.tokens("gus", "--role", "grader")
+            shown = self.as_user(tokens["ada"], "quota").stdout
+            self.assertRegex(shown, r"^ada, student\n\n")
+            self.assertRegex(shown, r"\njobs +0 +1 +that have not ended\n")
+            self.assertRegex(shown, r"\nprocessor time +0 s +1:30:00 +today; the next day begins in [0-9:]+( s)?\n")
+            self.assertRegex(shown, r"\nwatches +0 +8 *\n")
+            self.assertRegex(shown, r"\nstorage +0 bytes +512 MiB +scenes and jobs\n")
+            self.assertRegex(shown, r"\nrequests +1 +500 +50 more a second\n")
+            self.assertRegex(self.as_user(tokens["gus"], "quota").stdout, r"\nprocessor time +0 s +no limit ")
+            told = json.loads(self.as_user(tokens["ada"], "quota", "--json").stdout)
+            self.assertEqual((told["user"], told["jobs"]["limit"]), ("ada", 1))
+            self.as_user(tokens["ada"], "submit", "gallery:cornell", "--samples", "1000000000", "--quiet")
+            refused = self.as_user(tokens["ada"], "submit", "gallery:cornell", "--samples", "16", status=4).stderr
+            self.assertIn("max_jobs_per_user: 1 of your jobs have not ended; allowed: 1. Wait for one, or cancel one (try again "
+                          "in 2 s)", refused)
+            self.assertEqual(refused.count("\n"), 1, refused)
+            self.assertRegex(self.as_user(tokens["ada"], "quota").stdout, r"\njobs +1 +1 ")
+        with Daemon(FLATLIGHTD, arguments=arguments) as daemon:
+            self.environment["FLATLIGHT_SERVER"] = daemon.address
+            self.as_user(tokens["ada"], "quota")
+            refused = self.as_user(tokens["ada"], "quota", status=4).stderr
+            self.assertRegex(refused, r"max_requests_per_user: .*allowed: 1, and 0.01 more a second "
+                             r"\(try again in (\d\d|100) s\)")
+        bad = subprocess.run([FLATLIGHTD, "--quota", "student.jobs=many"], capture_output=True, text=True, timeout=60)
+        self.assertEqual(bad.returncode, 2)
+        self.assertIn('the value "many" must be none, or a whole number greater than 0', bad.stderr)
+
     def test_jobs_are_shared(self):
         tokens = self.tokens("ada") | self.tokens("bob", "--group", "lab-1") | self.tokens("cyd")
         ada, bob, cyd = tokens["ada"], tokens["bob"], tokens["cyd"]

@@ -146,21 +146,6 @@ TEST_F(FairnessTest, InteractiveWorkComesBeforeARegrade) {
   renderings_.Release();
 }
 
-TEST_F(FairnessTest, AUserHasSoManyJobsAndNoMore) {
-  SchedulerOptions options;
-  options.max_jobs_per_user = 2;
-  MakeScheduler(options);
-  renderings_.Hold();
-  const JobId first = Submit("a", "ada");
-  Submit("b", "ada");
-  const auto refused = SubmitScene(MakeScene("c", {8}), std::nullopt, "ada");
-  EXPECT_THAT(refused, StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("2 of your jobs")));
-  EXPECT_EQ(QuotaViolationOf(refused.status())->subject, "max_jobs_per_user");
-  EXPECT_THAT(SubmitScene(MakeScene("c", {8}), std::nullopt, "bob"), IsOk());
-  ASSERT_THAT(scheduler_->Cancel(first), IsOk());
-  EXPECT_THAT(SubmitScene(MakeScene("c", {8}), std::nullopt, "ada"), IsOk());
-}
-
 TEST_F(FairnessTest, APausedJobRestsAndItsTimeToo) {
   constexpr int kManySteps = 1000;
   renderings_.set_total_steps(kManySteps);

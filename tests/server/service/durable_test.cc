@@ -21,6 +21,7 @@ namespace flatlight {
 namespace {
 
 using grpc::StatusCode;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using testing::LoopbackServer;
 using testing::TestContext;
@@ -327,6 +328,22 @@ TEST_F(DurableTest, AFullDiskRefusesJobsAndLosesNone) {
   Restart(Options());  // It is written at last.
   EXPECT_EQ(Get(running).state(), v1::Job::SUCCEEDED);
   EXPECT_TRUE(FetchBytes(running) == result);
+}
+
+TEST_F(DurableTest, WhoFollowsACancelledJobIsNotCancelledWithIt) {
+  Restart(Options());
+  const v1::CreateJobRequest endless = Request(1'000'000'000);
+  const std::string leader = Create(endless).name();
+  const std::string follower = Create(endless).name();
+  while (!Get(follower).shared_work()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  TestContext context;
+  v1::CancelJobRequest request;
+  request.set_name(leader);
+  v1::Job job;
+  ASSERT_TRUE(server_->render().CancelJob(&context, request, &job).ok());
+  EXPECT_EQ(job.state(), v1::Job::CANCELLED);
+  Restart(Options());
+  EXPECT_THAT(Get(follower).state(), AnyOf(v1::Job::QUEUED, v1::Job::RUNNING));
 }
 
 TEST_F(DurableTest, ADeletedJobStaysDeleted) {

@@ -70,6 +70,41 @@ TEST_F(MemorySceneStoreTest, RefusesBadHashesAndSizes) {
   EXPECT_THAT(store_.Upload(kOwner, hash_, 101, 0, "x"), StatusIs(kInvalidArgument, HasSubstr("100")));
 }
 
+TEST_F(MemorySceneStoreTest, AnOwnersRoomIsLimited) {
+  const auto upload = [&](const std::string& owner, const std::string& text, std::uint64_t elsewhere,
+                          std::size_t bytes = 100) {
+    return store_.Upload(owner, Sha256Of(text), text.size(), 0, text.substr(0, bytes), SceneRoom{50, elsewhere});
+  };
+  const std::string a(30, 'a');
+  const std::string b(20, 'b');
+  ASSERT_THAT(upload("ada", a, 0), IsOk());
+  EXPECT_EQ(store_.BytesOf("ada"), 30u);
+  EXPECT_EQ(store_.BytesOf("bob"), 0u);
+  const auto refused = upload("ada", b, 1);
+  EXPECT_THAT(refused, StatusIs(kResourceExhausted, HasSubstr("hold 31 bytes, and 20 more are wanted; allowed: 50")));
+  EXPECT_EQ(QuotaViolationOf(refused.status())->use->used, 31);
+  ASSERT_THAT(upload("bob", a, 20), IsOk()) << "it is kept once, and counts for both";
+  ASSERT_THAT(store_.Disown("ada", Sha256Of(a)), IsOk());
+  EXPECT_EQ(store_.BytesOf("ada"), 0u);
+  EXPECT_EQ(store_.BytesOf("bob"), 30u);
+  ASSERT_THAT(store_.Delete(Sha256Of(a)), IsOk());
+  EXPECT_EQ(store_.BytesOf("bob"), 0u);
+  EXPECT_THAT(upload("ada", b, 30), IsOk()) << "to the last byte";
+
+  // What was begun counts too, until it has been idle for a minute and room is needed.
+  ASSERT_THAT(upload("ada", a, 0, 25), IsOk());
+  EXPECT_EQ(store_.BytesOf("ada"), 45u);
+  const std::string c(10, 'c');
+  EXPECT_THAT(upload("ada", c, 0), StatusIs(kResourceExhausted, _));
+  clock_.Advance(std::chrono::seconds(61));
+  EXPECT_THAT(upload("ada", c, 0), IsOk());
+  EXPECT_EQ(store_.BytesOf("ada"), 30u);
+  EXPECT_THAT(store_.Upload("ada", Sha256Of(c), c.size(), 0, std::string(10, 'x')), IsOk()) << "it is there";
+  const std::string d(10, 'd');
+  EXPECT_THAT(store_.Upload("ada", Sha256Of(d), d.size(), 0, std::string(10, 'x')), StatusIs(kInvalidArgument, _));
+  EXPECT_EQ(store_.BytesOf("ada"), 30u) << "what was thrown away does not count";
+}
+
 TEST_F(MemorySceneStoreTest, AllScenesTogetherAreLimited) {
   ASSERT_THAT(UploadAll(std::string(90, 'a')), IsOk());
   const auto refused = UploadAll(std::string(61, 'b'));

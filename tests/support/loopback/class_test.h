@@ -23,8 +23,11 @@ class ClassTest : public ::testing::Test {
  protected:
   void Start(const std::string& token = "") {
     ServerOptions options;
-    options.data = folder_.path() + "/data";
     options.token = token;
+    Start(options);
+  }
+  void Start(ServerOptions options) {
+    options.data = folder_.path() + "/data";
     server_ = std::make_unique<LoopbackServer>(options);
     database_ = *Database::Open(Storage::DatabasePath(options.data));
   }

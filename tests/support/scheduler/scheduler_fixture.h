@@ -55,7 +55,7 @@ class SchedulerFixture : public ::testing::Test {
     spec->job_class = job_class;
     spec->id = JobId::Random();
     spec->scene = std::make_shared<SceneOutline>(*scene);
-    return scheduler_->Submit(spec, std::move(scene), {}, key);
+    return scheduler_->Submit(spec, std::move(scene), {}, key, quotas_);
   }
 
   JobId Submit(const std::string& name, const std::string& owner = "", JobClass job_class = JobClass::kInteractive) {
@@ -85,6 +85,7 @@ class SchedulerFixture : public ::testing::Test {
   // Until all jobs so far are ready for a slice: they are prepared one after the other.
   void AwaitPreparation() { AwaitPhase(Submit("last"), JobPhase::kRunning); }
 
+  Quotas quotas_;  // Of everybody who submits.
   FakeClock clock_;
   ThreadPool pool_{2};
   MemoryJobStore store_{{}, clock_};
