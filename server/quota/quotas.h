@@ -3,6 +3,7 @@
 #ifndef FLATLIGHT_SERVER_QUOTA_QUOTAS_H_
 #define FLATLIGHT_SERVER_QUOTA_QUOTAS_H_
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -23,8 +24,11 @@ struct Quotas {
   std::optional<double> requests = {};              // A second, in the long run.
 };
 
-// At most so many seconds' worth of requests at once, after as long a rest.
-inline constexpr double kBurstSeconds = 10;
+// So many requests at once, after a rest: ten seconds' worth, and at least one, as less often than that must do too.
+inline double RequestsAtOnce(double a_second) {
+  constexpr double kBurstSeconds = 10;
+  return std::max(1.0, a_second * kBurstSeconds);
+}
 
 class QuotaTable {
  public:

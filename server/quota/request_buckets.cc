@@ -7,16 +7,10 @@
 #include "server/quota/quotas.h"
 
 namespace flatlight {
-namespace {
-
-// At least one: less often than every kBurstSeconds must do too.
-double CapacityOf(double a_second) { return std::max(1.0, a_second * kBurstSeconds); }
-
-}  // namespace
 
 RequestBuckets::Bucket& RequestBuckets::Filled(Shard& shard, const std::string& user, double a_second) {
   const Clock::Time now = clock_.Now();
-  const double capacity = CapacityOf(a_second);
+  const double capacity = RequestsAtOnce(a_second);
   const auto [entry, is_new] = shard.buckets.try_emplace(user, Bucket{capacity, now});
   Bucket& bucket = entry->second;
   const double seconds = std::chrono::duration<double>(now - bucket.filled).count();
@@ -39,7 +33,7 @@ std::optional<Clock::Duration> RequestBuckets::Take(const std::string& user, dou
 double RequestBuckets::Taken(const std::string& user, double a_second) {
   Shard& shard = ShardOf(user);
   const std::lock_guard lock(shard.mutex);
-  return CapacityOf(a_second) - Filled(shard, user, a_second).left;
+  return RequestsAtOnce(a_second) - Filled(shard, user, a_second).left;
 }
 
 }  // namespace flatlight

@@ -19,7 +19,7 @@ class RequestBuckets {
   // `clock` outlives this.
   explicit RequestBuckets(const Clock& clock) : clock_(clock) {}
 
-  // Takes a request out of the user's bucket, which holds kBurstSeconds' worth and gets `a_second` new ones. If there
+  // Takes a request out of the user's bucket, which holds RequestsAtOnce and gets `a_second` new ones. If there
   // is none, how long until there is one; being refused costs nothing.
   std::optional<Clock::Duration> Take(const std::string& user, double a_second);
   // How many of the bucket's requests are out.

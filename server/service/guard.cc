@@ -46,7 +46,7 @@ absl::Status Guard::TakeRequest(const Caller& caller) const {
   if (!a_second) return absl::OkStatus();
   const auto wait = requests_.Take(caller.name, *a_second);
   if (!wait) return absl::OkStatus();
-  const double at_once = std::max(1.0, *a_second * kBurstSeconds);
+  const double at_once = RequestsAtOnce(*a_second);
   const auto number = [](double value) { return std::to_string(static_cast<std::int64_t>(value)); };
   return MakeQuotaError("TOO_MANY_REQUESTS", "max_requests_per_user",
                         "you have made " + number(at_once) + " requests at once; allowed: " + number(at_once) +
@@ -104,14 +104,14 @@ absl::StatusOr<Caller> Guard::Authenticate(const grpc::ServerContextBase& contex
   if (!value.starts_with(kScheme)) return Refuse("the metadata authorization must be: Bearer TOKEN");
   const std::string_view token = value.substr(kScheme.size());
   // Hashes of equal length, compared in constant time: how long it takes tells nothing about the token.
-  const std::string hash = Sha256Of(token);
+  std::string hash = Sha256Of(token);
   if (!token_hash_.empty() && CRYPTO_memcmp(hash.data(), token_hash_.data(), hash.size()) == 0) {
     return Caller{std::string(kServerOwner), Role::kAdmin, {}};
   }
   if (!*has_users) return Refuse("the token is not this server's");
   auto user = users_->FindByTokenHash(hash);
   if (!user.ok()) return user.status();
-  return Caller{std::move(user->name), user->role, std::move(user->groups), hash};
+  return Caller{std::move(user->name), user->role, std::move(user->groups), std::move(hash)};
 }
 
 }  // namespace flatlight

@@ -31,7 +31,7 @@ v1::Quotas QuotasToProto(Backend& backend, const Caller& caller) {
   Fill(static_cast<double>(StorageOf(backend, caller.name)), quotas.storage_bytes, *all.mutable_storage_bytes());
   all.mutable_requests()->set_used(backend.guard.RequestsTaken(caller));
   if (quotas.requests) {
-    all.mutable_requests()->set_limit(std::max(1.0, *quotas.requests * kBurstSeconds));
+    all.mutable_requests()->set_limit(RequestsAtOnce(*quotas.requests));
     all.set_requests_per_second(*quotas.requests);
   }
   return all;

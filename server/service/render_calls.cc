@@ -124,7 +124,7 @@ absl::StatusOr<Submission> MakeSubmission(Backend& backend, const v1::CreateJobR
   const auto named = FindScene(request.scene().name(), backend.scenes);
   if (!named.ok()) return named.status();
   if (named->info.gallery()) return submission;
-  submission.scene_sha256 = request.scene().name().substr(std::string("scenes/").size());
+  submission.scene_sha256 = SceneIdOf(request.scene().name());
   submission.scene = named->json;
   return submission;
 }

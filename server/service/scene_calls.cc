@@ -40,9 +40,6 @@ std::optional<std::uint64_t> AddGallery(std::uint64_t position, std::size_t size
   return position < gallery.size() ? std::optional(position) : std::nullopt;
 }
 
-// The {scene} of scenes/{scene}.
-std::string IdOf(const std::string& name) { return name.substr(std::string("scenes/").size()); }
-
 // Who has an upload, as far as the caller may know.
 void AddOwners(const Caller& caller, const std::string& sha256, SceneStore& scenes, v1::SceneInfo& info) {
   if (caller.role >= Role::kGrader) {
@@ -67,8 +64,9 @@ void AddUploads(const Caller& caller, const ScenePage& uploads, SceneStore& scen
 
 // With its owners, and the caller's own shares.
 void AddSharing(const Caller& caller, SceneStore& scenes, v1::SceneInfo& info) {
-  AddOwners(caller, IdOf(info.name()), scenes, info);
-  for (const Grant& grant : scenes.GrantsOf(caller.name, IdOf(info.name()))) *info.add_shares() = GrantToProto(grant);
+  AddOwners(caller, SceneIdOf(info.name()), scenes, info);
+  for (const Grant& grant : scenes.GrantsOf(caller.name, SceneIdOf(info.name())))
+    *info.add_shares() = GrantToProto(grant);
 }
 
 // Does `action(hash)` for an upload of the caller's own.
@@ -81,7 +79,7 @@ absl::StatusOr<v1::SceneInfo> ChangeShares(Backend& backend, const Caller& calle
     return MakeError(absl::StatusCode::kFailedPrecondition, "GALLERY_SCENE",
                      name + " belongs to the gallery, which everybody has");
   }
-  const std::string sha256 = IdOf(name);
+  const std::string sha256 = SceneIdOf(name);
   if (!backend.scenes.Owns(caller.name, sha256)) {
     return MakeError(absl::StatusCode::kPermissionDenied, "NOT_YOUR_SCENE",
                      name + " is not yours: only who has uploaded it shares it");
@@ -166,7 +164,7 @@ absl::StatusOr<v1::DeleteSceneResponse> DeleteScene(Backend& backend, const Call
     return MakeError(absl::StatusCode::kFailedPrecondition, "GALLERY_SCENE",
                      request.name() + " belongs to the gallery and stays");
   }
-  const std::string sha256 = IdOf(request.name());
+  const std::string sha256 = SceneIdOf(request.name());
   if (absl::Status deleted = DeleteSeenScene(caller, sha256, backend.scenes); !deleted.ok()) return deleted;
   if (!backend.scenes.Get(sha256).ok()) backend.built_scenes.Drop(sha256);
   return v1::DeleteSceneResponse();

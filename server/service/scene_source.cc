@@ -41,12 +41,14 @@ bool WithinLimits(const v1::Scene& scene, const Limits& limits, Diagnostics& dia
 
 }  // namespace
 
+std::string SceneIdOf(const std::string& name) { return name.substr(kPrefix.size()); }
+
 absl::StatusOr<NamedScene> FindScene(const std::string& name, SceneStore& scenes) {
   const std::string_view view = name;
   if (!view.starts_with(kPrefix) || view.size() == kPrefix.size() || view.size() > kPrefix.size() + 64) {
     return MakeFieldError("name", "\"" + name + "\"; a scene is named scenes/{gallery name} or scenes/{sha256}");
   }
-  const std::string id(view.substr(kPrefix.size()));
+  const std::string id = SceneIdOf(name);
   NamedScene scene;
   scene.info.set_name(name);
   if (const GalleryScene* gallery = FindGalleryScene(id)) {

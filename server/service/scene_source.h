@@ -25,6 +25,9 @@ struct NamedScene {
   std::shared_ptr<const std::string> json;
 };
 
+// The {scene} of scenes/{scene}, of a name that has that form.
+std::string SceneIdOf(const std::string& name);
+
 // Whoever has it. INVALID_ARGUMENT if `name` is not scenes/{scene}, NOT_FOUND if there is none.
 absl::StatusOr<NamedScene> FindScene(const std::string& name, SceneStore& scenes);
 // Uploads that the caller may not see are NOT_FOUND, in the very words of those that are not there.

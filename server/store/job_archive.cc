@@ -46,11 +46,6 @@ absl::Status ReleaseBlobs(Writing& writing, const std::string& condition, std::i
   }
 }
 
-absl::Status RemoveJobs(Writing& writing, const std::string& condition, std::int64_t parameter, StoredBytes& removed) {
-  if (absl::Status less = ReleaseBlobs(writing, condition, parameter, removed); !less.ok()) return less;
-  return writing.Prepare("DELETE FROM jobs WHERE " + condition).Bind(parameter).Run();
-}
-
 // The number of a job; NOT_FOUND if there is none.
 absl::StatusOr<std::int64_t> NumberOf(Database& database, const JobId& id) {
   Statement number = database.Prepare("SELECT number FROM jobs WHERE uuid = ?");
@@ -143,9 +138,8 @@ absl::StatusOr<JobId> JobArchive::Insert(const JobId& id, const std::string& own
       if (absl::Status used = writing.Use(*scene); !used.ok()) return used;
     }
     Statement job = writing.Prepare(
-        "INSERT INTO jobs(uuid, owner, request, scene, message, sequence, build, stored_bytes) VALUES(?, ?, ?, ?, ?, "
-        "0, "
-        "?, ?)");
+        "INSERT INTO jobs(uuid, owner, request, scene, message, sequence, build, stored_bytes) "
+        "VALUES(?, ?, ?, ?, ?, 0, ?, ?)");
     job.Bind(std::string_view(id.uuid())).Bind(std::string_view(owner)).Bind(std::string_view(request->sha256));
     job.Bind(scene ? std::optional(scene->sha256) : std::nullopt).BindBlob(message).Bind(std::string_view(build_));
     return job.Bind(stored_bytes).Run();
@@ -224,21 +218,22 @@ absl::Status JobArchive::End(const JobId& id, std::string message, std::uint64_t
 }
 
 absl::Status JobArchive::Delete(const JobId& id) {
-  StoredBytes removed;
-  absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
-    const auto number = NumberOf(writing.database(), id);
-    if (!number.ok()) return number.status();
-    return RemoveJobs(writing, "number = ?", *number, removed);
-  });
-  if (!written.ok()) return written;
-  for (const auto& [owner, bytes] : removed) AddStoredBytes(owner, -bytes);
-  return written;
+  return RemoveIf("number = ?", [&](Writing& writing) { return NumberOf(writing.database(), id); });
 }
 
 absl::Status JobArchive::DropEnded(WallTime before) {
+  return RemoveIf("end_time < ?", [&](Writing&) -> absl::StatusOr<std::int64_t> { return SecondsOf(before); });
+}
+
+template <class Parameter>
+absl::Status JobArchive::RemoveIf(const std::string& condition, const Parameter& parameter) {
   StoredBytes removed;
-  absl::Status written =
-      storage_.Write([&](Writing& writing) { return RemoveJobs(writing, "end_time < ?", SecondsOf(before), removed); });
+  absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
+    const auto value = parameter(writing);
+    if (!value.ok()) return value.status();
+    if (absl::Status less = ReleaseBlobs(writing, condition, *value, removed); !less.ok()) return less;
+    return writing.Prepare("DELETE FROM jobs WHERE " + condition).Bind(*value).Run();
+  });
   if (!written.ok()) return written;
   for (const auto& [owner, bytes] : removed) AddStoredBytes(owner, -bytes);
   return written;

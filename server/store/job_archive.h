@@ -84,6 +84,9 @@ class JobArchive {
   static constexpr std::size_t kMostGranted = 10'000;
 
   void AddStoredBytes(const std::string& owner, std::int64_t bytes);
+  // Removes the jobs that meet an SQL condition on what parameter(writing) returns.
+  template <class Parameter>
+  absl::Status RemoveIf(const std::string& condition, const Parameter& parameter);
 
   Storage& storage_;
   const std::string build_;

@@ -51,6 +51,17 @@ class Connection {
     return Call([&](grpc::ClientContext* context) { return (stub.*method)(context, request, &response); }, on_signal);
   }
 
+  // The same, for who wants the response or the error.
+  template <class Stub, class Request, class Response>
+  absl::StatusOr<Response> Ask(Stub& stub,
+                               grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
+                               const Request& request, OnSignal on_signal = OnSignal::kCancel) {
+    Response response;
+    absl::Status status = Call(stub, method, request, response, on_signal);
+    if (!status.ok()) return status;
+    return response;
+  }
+
   // What the user is told about a call that ended so.
   absl::Status Explain(const grpc::Status& status) const;
 

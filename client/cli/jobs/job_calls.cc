@@ -13,22 +13,12 @@ namespace {
 constexpr int kCreateTries = 3;
 constexpr std::chrono::seconds kSilence{30};
 
-// A call that returns the job.
-template <class Method, class Request>
-absl::StatusOr<v1::Job> CallForJob(Connection& connection, Method method, const Request& request,
-                                   Connection::OnSignal on_signal = Connection::OnSignal::kCancel) {
-  v1::Job job;
-  const absl::Status status = connection.Call(connection.render(), method, request, job, on_signal);
-  if (!status.ok()) return status;
-  return job;
-}
-
 // Also after a signal.
 template <class Request, class Method>
 absl::StatusOr<v1::Job> ControlJob(Connection& connection, Method method, const std::string& name) {
   Request request;
   request.set_name(name);
-  return CallForJob(connection, method, request, Connection::OnSignal::kGoOn);
+  return connection.Ask(connection.render(), method, request, Connection::OnSignal::kGoOn);
 }
 
 }  // namespace
@@ -58,7 +48,7 @@ absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource&
 absl::StatusOr<v1::Job> GetJob(Connection& connection, const std::string& name) {
   v1::GetJobRequest request;
   request.set_name(name);
-  return CallForJob(connection, &v1::RenderService::Stub::GetJob, request);
+  return connection.Ask(connection.render(), &v1::RenderService::Stub::GetJob, request);
 }
 
 absl::StatusOr<v1::Job> CancelJob(Connection& connection, const std::string& name) {
@@ -79,14 +69,14 @@ absl::StatusOr<v1::Job> ShareJob(Connection& connection, const std::string& name
   request.set_name(name);
   request.mutable_share()->set_grantee(grantee);
   request.mutable_share()->set_access(access);
-  return CallForJob(connection, &v1::RenderService::Stub::ShareJob, request);
+  return connection.Ask(connection.render(), &v1::RenderService::Stub::ShareJob, request);
 }
 
 absl::StatusOr<v1::Job> UnshareJob(Connection& connection, const std::string& name, const std::string& grantee) {
   v1::UnshareJobRequest request;
   request.set_name(name);
   request.set_grantee(grantee);
-  return CallForJob(connection, &v1::RenderService::Stub::UnshareJob, request);
+  return connection.Ask(connection.render(), &v1::RenderService::Stub::UnshareJob, request);
 }
 
 absl::Status DeleteJob(Connection& connection, const std::string& name) {

@@ -16,10 +16,7 @@ absl::StatusOr<Response> CallRooms(Connection& connection,
                                    grpc::Status (v1::ReviewService::Stub::*method)(grpc::ClientContext*, const Request&,
                                                                                    Response*),
                                    const Request& request) {
-  Response response;
-  const absl::Status status = connection.Call(connection.review(), method, request, response);
-  if (!status.ok()) return status;
-  return response;
+  return connection.Ask(connection.review(), method, request);
 }
 
 // Every room that the caller may see, newest first.

@@ -61,10 +61,7 @@ absl::StatusOr<v1::SceneInfo> ShareScene(Connection& connection, const std::stri
   request.set_name(name);
   request.mutable_share()->set_grantee(grantee);
   request.mutable_share()->set_access(access);
-  v1::SceneInfo scene;
-  absl::Status status = connection.Call(connection.scenes(), &v1::SceneService::Stub::ShareScene, request, scene);
-  if (!status.ok()) return status;
-  return scene;
+  return connection.Ask(connection.scenes(), &v1::SceneService::Stub::ShareScene, request);
 }
 
 absl::StatusOr<v1::SceneInfo> UnshareScene(Connection& connection, const std::string& name,
@@ -72,10 +69,7 @@ absl::StatusOr<v1::SceneInfo> UnshareScene(Connection& connection, const std::st
   v1::UnshareSceneRequest request;
   request.set_name(name);
   request.set_grantee(grantee);
-  v1::SceneInfo scene;
-  absl::Status status = connection.Call(connection.scenes(), &v1::SceneService::Stub::UnshareScene, request, scene);
-  if (!status.ok()) return status;
-  return scene;
+  return connection.Ask(connection.scenes(), &v1::SceneService::Stub::UnshareScene, request);
 }
 
 absl::Status DeleteScene(Connection& connection, const std::string& name) {

@@ -81,10 +81,7 @@ class FailingDiskTest(RunningJobCase):
         with self.daemon() as daemon:
             self.serve(daemon)
             ended, values = self.ended_job()
-            samples = self.samples_for(seconds=2)
-            twin = self.twin(samples)
-            job = self.submit(samples)
-            watch = self.start_watch(job)
+            job, watch, twin = self.start(seconds=2)
             subprocess.run(["chattr", "-R", "+i", self.data], check=True)
             refused = self.run_cli("submit", "gallery:penumbra", status=3).stderr
             self.assertRegex(refused, rf"may not write {re.escape(self.data)}\S* .*let the server's user write there")
@@ -104,10 +101,7 @@ class FailingDiskTest(RunningJobCase):
         with self.daemon(f"mount -t tmpfs -o size=8m tmpfs {self.data}") as daemon:
             self.serve(daemon)
             ended, values = self.ended_job()
-            samples = self.samples_for(seconds=2)
-            twin = self.twin(samples)
-            job = self.submit(samples)
-            watch = self.start_watch(job)
+            job, watch, twin = self.start(seconds=2)
             inside = f"/proc/{daemon.process.pid}/root{self.data}"
             with open(inside + "/filler", "wb", buffering=0) as file:
                 try:

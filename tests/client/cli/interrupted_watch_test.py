@@ -20,10 +20,7 @@ class InterruptedWatchTest(RunningJobCase):
     def test_a_connection_that_is_cut_every_second_while_the_job_runs(self):
         with Daemon(FLATLIGHTD) as daemon, Proxy(daemon.address) as proxy:
             self.serve(daemon)
-            samples = self.samples_for(seconds=6)
-            twin = self.twin(samples)
-            job = self.submit(samples)
-            watch = self.start_watch(job, proxy.address)
+            job, watch, twin = self.start(seconds=6, server=proxy.address)
             cuts = 0
             while watch.poll() is None:
                 if self.show(job)["state"] == "RUNNING":
@@ -37,10 +34,7 @@ class InterruptedWatchTest(RunningJobCase):
     def test_a_server_that_is_stopped_for_a_while_goes_on(self):
         with Daemon(FLATLIGHTD) as daemon:
             self.serve(daemon)
-            samples = self.samples_for(seconds=3)
-            twin = self.twin(samples)
-            job = self.submit(samples)
-            watch = self.start_watch(job)
+            job, watch, twin = self.start(seconds=3)
             self.assertEqual(self.show(job)["state"], "RUNNING")
             daemon.process.send_signal(signal.SIGSTOP)
             time.sleep(STOP_SECONDS)

@@ -36,6 +36,13 @@ class RunningJobCase(CliCase):
             time.sleep(0.05)
         return watch
 
+    def start(self, seconds, server=None):
+        """A job that takes about that long: its name, its watch, and what a twin of it has found undisturbed."""
+        samples = self.samples_for(seconds)
+        twin = self.twin(samples)
+        job = self.submit(samples)
+        return job, self.start_watch(job, server), twin
+
     def show(self, job):
         return json.loads(self.run_cli("show", job, "--json").stdout)
 

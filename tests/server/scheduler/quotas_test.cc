@@ -45,6 +45,17 @@ class QuotasTest : public testing::SchedulerFixture {
     return Await(
         id, [](const JobState& state) { return state.queue && state.queue->reason == QueuePlace::Reason::kDayUsedUp; });
   }
+  // A job of ada's that has begun when her day is used up.
+  JobId SubmitAndLetRest() {
+    renderings_.Hold();
+    const JobId id = Submit("a", "ada");
+    AwaitPreparation();
+    ledger_.Charge("ada", kDay);
+    renderings_.Allow(2);
+    AwaitRest(id);
+    renderings_.Release();
+    return id;
+  }
   // A job of a work that others may share.
   JobId SubmitWork(const std::string& owner) {
     auto spec = std::make_shared<JobSpec>();
@@ -191,13 +202,7 @@ TEST_F(QuotasTest, NobodyRestsBecauseOfTheOneWhoDoesTheSameWork) {
 
 TEST_F(QuotasTest, WhoGetsMoreGoesOn) {
   Make();
-  renderings_.Hold();
-  const JobId a = Submit("a", "ada");
-  AwaitPreparation();
-  ledger_.Charge("ada", kDay);
-  renderings_.Allow(2);
-  AwaitRest(a);
-  renderings_.Release();
+  const JobId a = SubmitAndLetRest();
   quotas_.cpu_seconds.reset();
   EXPECT_THAT(SubmitScene(MakeScene("c", {8}), std::nullopt, "ada"), IsOk());
   EXPECT_EQ(AwaitEnd(a).phase, JobPhase::kSucceeded);
@@ -205,13 +210,7 @@ TEST_F(QuotasTest, WhoGetsMoreGoesOn) {
 
 TEST_F(QuotasTest, AServerThatGoesDownWaitsForNoTomorrow) {
   Make();
-  renderings_.Hold();
-  const JobId a = Submit("a", "ada");
-  AwaitPreparation();
-  ledger_.Charge("ada", kDay);
-  renderings_.Allow(2);
-  AwaitRest(a);
-  renderings_.Release();
+  const JobId a = SubmitAndLetRest();
   scheduler_->Stop();
   EXPECT_EQ(store_.Get(a)->state->phase, JobPhase::kCancelled);
 }

@@ -25,7 +25,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::ReasonOf;
 using ::testing::SizeIs;
-using testing::TestContext;
 
 TEST(PolicyTest, EveryRpcHasARowAndEveryRowAnRpc) {
   std::set<std::string> requests;
@@ -138,14 +137,6 @@ class SceneAccessTest : public AccessTest {
     scene.set_name("a floor and a lamp");
     ASSERT_TRUE(google::protobuf::util::MessageToJsonString(scene, &json_).ok());
     name_ = "scenes/" + Sha256Of(json_);
-  }
-  template <class Request, class Response>
-  grpc::Status CallScenes(const std::string& user, const Request& request, Response& response,
-                          grpc::Status (v1::SceneService::Stub::*rpc)(grpc::ClientContext*, const Request&,
-                                                                      Response*)) {
-    TestContext context;
-    Identify(user, context);
-    return (server_->scenes().*rpc)(&context, request, &response);
   }
   // Returns how many bytes are there.
   std::uint64_t UploadPiece(const std::string& user, std::size_t offset, std::size_t size) {

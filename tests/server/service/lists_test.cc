@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "google/protobuf/util/json_util.h"
-#include "server/store/sha256.h"
 #include "tests/support/loopback/class_test.h"
 #include "tests/support/loopback/loopback_server.h"
 
@@ -190,27 +188,6 @@ TEST_F(ListsTest, RoomsComeInPagesToo) {
 
 class SceneListsTest : public ListsTest {
  protected:
-  template <class Request, class Response>
-  grpc::Status CallScenes(const std::string& user, const Request& request, Response& response,
-                          grpc::Status (v1::SceneService::Stub::*rpc)(grpc::ClientContext*, const Request&,
-                                                                      Response*)) {
-    testing::TestContext context;
-    Identify(user, context);
-    return (server_->scenes().*rpc)(&context, request, &response);
-  }
-  std::string Upload(const std::string& user, const std::string& title) {
-    v1::Scene scene = testing::FloorAndLampProto({4});
-    scene.set_name(title);
-    std::string json;
-    EXPECT_TRUE(google::protobuf::util::MessageToJsonString(scene, &json).ok());
-    v1::UploadSceneRequest request;
-    request.set_sha256(Sha256Of(json));
-    request.set_total_bytes(json.size());
-    request.set_data(json);
-    v1::UploadSceneResponse response;
-    EXPECT_TRUE(CallScenes(user, request, response, &v1::SceneService::Stub::UploadScene).ok());
-    return response.name();
-  }
   // The names of one page.
   NamePage Scenes(const std::string& user, int size, const std::string& token = "") {
     v1::ListScenesRequest request;

@@ -7,9 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "google/protobuf/util/json_util.h"
 #include "server/store/grants.h"
-#include "server/store/sha256.h"
 #include "tests/support/loopback/class_test.h"
 #include "tests/support/loopback/loopback_server.h"
 
@@ -30,29 +28,14 @@ class SceneSharingTest : public testing::ClassTest {
     AddClass();
     name_ = Upload("ada", "ada's");
   }
-  template <class Request, class Response>
-  grpc::Status CallScenes(const std::string& user, const Request& request, Response& response,
-                          grpc::Status (Stub::*rpc)(grpc::ClientContext*, const Request&, Response*)) {
-    testing::TestContext context;
-    Identify(user, context);
-    return (server_->scenes().*rpc)(&context, request, &response);
-  }
+  // Its title is read.
   std::string Upload(const std::string& user, const std::string& title) {
-    v1::Scene scene = testing::FloorAndLampProto({4});
-    scene.set_name(title);
-    std::string json;
-    EXPECT_TRUE(google::protobuf::util::MessageToJsonString(scene, &json).ok());
-    v1::UploadSceneRequest request;
-    request.set_sha256(Sha256Of(json));
-    request.set_total_bytes(json.size());
-    request.set_data(json);
-    v1::UploadSceneResponse response;
-    EXPECT_TRUE(CallScenes(user, request, response, &Stub::UploadScene).ok());
-    v1::ValidateSceneRequest validate;  // Which reads its title.
-    validate.mutable_scene()->set_name(response.name());
+    const std::string name = ClassTest::Upload(user, title);
+    v1::ValidateSceneRequest validate;
+    validate.mutable_scene()->set_name(name);
     v1::ValidateSceneResponse validated;
     EXPECT_TRUE(CallScenes(user, validate, validated, &Stub::ValidateScene).ok());
-    return response.name();
+    return name;
   }
   grpc::Status Share(const std::string& user, const std::string& name, const std::string& grantee,
                      v1::Share::Access access = v1::Share::READ) {

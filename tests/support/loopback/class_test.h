@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "google/protobuf/util/json_util.h"
+#include "server/store/sha256.h"
 #include "server/store/storage.h"
 #include "server/store/user_store.h"
 #include "tests/support/loopback/loopback_server.h"
@@ -49,6 +51,14 @@ class ClassTest : public ::testing::Test {
     Identify(user, context);
     return (server_->render().*rpc)(&context, request, &response);
   }
+  template <class Request, class Response>
+  grpc::Status CallScenes(const std::string& user, const Request& request, Response& response,
+                          grpc::Status (v1::SceneService::Stub::*rpc)(grpc::ClientContext*, const Request&,
+                                                                      Response*)) {
+    TestContext context;
+    Identify(user, context);
+    return (server_->scenes().*rpc)(&context, request, &response);
+  }
   void Identify(const std::string& user, grpc::ClientContext& context) {
     const auto token = tokens_.find(user);
     const std::string sent = token == tokens_.end() ? user : token->second;
@@ -63,6 +73,20 @@ class ClassTest : public ::testing::Test {
     const grpc::Status status = Call(user, request, job, &v1::RenderService::Stub::CreateJob);
     EXPECT_TRUE(status.ok()) << status.error_message();
     return job;
+  }
+  // A scene that differs from others by its title. Returns its name.
+  std::string Upload(const std::string& user, const std::string& title) {
+    v1::Scene scene = FloorAndLampProto({4});
+    scene.set_name(title);
+    std::string json;
+    EXPECT_TRUE(google::protobuf::util::MessageToJsonString(scene, &json).ok());
+    v1::UploadSceneRequest request;
+    request.set_sha256(Sha256Of(json));
+    request.set_total_bytes(json.size());
+    request.set_data(json);
+    v1::UploadSceneResponse response;
+    EXPECT_TRUE(CallScenes(user, request, response, &v1::SceneService::Stub::UploadScene).ok());
+    return response.name();
   }
   // A call about the job `name`.
   template <class Request, class Response>
