@@ -125,7 +125,7 @@ bool DurableSceneStore::SetTitle(const std::string& reader, const std::string& s
   return true;
 }
 
-// What cannot be written has not happened. In memory first: that says whether it may be.
+// What cannot be written has not happened.
 absl::Status DurableSceneStore::Share(const std::string& owner, const std::string& sha256, const Grant& grant) {
   const std::lock_guard lock(sharing_);
   absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
