@@ -56,6 +56,16 @@ std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int p
         const absl::Status set = options.quotas.Set(text);
         if (!set.ok()) throw CLI::ValidationError("--quota", std::string(set.message()));
       });
+  std::vector<std::string> webhook_hosts;
+  app.add_option("--webhook-allow", webhook_hosts,
+                 "a host that may be told of the end of jobs (ports 80 and 443, or the one given); may repeat; default: "
+                 "none. A name must stand for a public address, or for one that is itself allowed so")
+      ->type_name("HOST[:PORT]")
+      ->allow_extra_args(false)
+      ->each([&options](const std::string& text) {
+        const absl::Status allowed = options.webhook_rules.Allow(text);
+        if (!allowed.ok()) throw CLI::ValidationError("--webhook-allow", std::string(allowed.message()));
+      });
   app.add_flag("--exit-with-parent", options.exit_with_parent, "end when standard input ends");
   CLI::App* backup =
       app.add_subcommand("backup", "copy the folder of a server, which may be running: --data DIR BACKUP");

@@ -6,7 +6,6 @@
 #include "server/store/error.h"
 #include "server/store/grant_table.h"
 #include "server/store/random_bytes.h"
-#include "server/store/schema.h"
 
 namespace flatlight {
 namespace {
@@ -67,13 +66,6 @@ void BindPerson(const RoomStore::Person& person, Statement& statement) {
 
 absl::Status NoSuchRoom(const RoomId& id) {
   return MakeError(absl::StatusCode::kNotFound, "ROOM_NOT_FOUND", id.Name() + " does not exist");
-}
-
-absl::StatusOr<std::unique_ptr<Database>> RoomStore::NewMemory() {
-  auto database = Database::Open(":memory:");
-  if (!database.ok()) return database;
-  if (absl::Status migrated = Migrate(**database); !migrated.ok()) return migrated;
-  return database;
 }
 
 absl::Status RoomStore::Write(const std::function<absl::Status()>& work) {

@@ -25,8 +25,6 @@ class RoomStore {
   // `database`: a connection for the store alone, of the newest version.
   RoomStore(const RoomLimits& limits, std::unique_ptr<Database> database)
       : limits_(limits), database_(std::move(database)) {}
-  // For rooms that end with the process.
-  static absl::StatusOr<std::unique_ptr<Database>> NewMemory();
 
   const RoomLimits& limits() const { return limits_; }
 

@@ -20,6 +20,8 @@
 #include "server/service/watch_hub.h"
 #include "server/store/job_store.h"
 #include "server/store/scene_store.h"
+#include "server/store/webhook_outbox.h"
+#include "server/webhook/webhook_rules.h"
 
 namespace flatlight {
 
@@ -41,6 +43,9 @@ struct Backend {
   TaskQueue& quick;
   TaskQueue& slow;
   CallTelemetry& telemetry;
+  const WebhookRules& webhook_rules;
+  WebhookOutbox& webhooks;
+  const std::string webhook_key;  // See WebhookOutbox.
   std::atomic<bool> draining = false;
   CallsUnderWay calls = {};
   const PageTokens page_tokens = {};

@@ -7,6 +7,7 @@
 #include "server/convert/settings_convert.h"
 #include "server/service/job_convert.h"
 #include "server/service/status_convert.h"
+#include "server/service/webhook_calls.h"
 #include "server/store/error.h"
 
 namespace flatlight {
@@ -47,8 +48,12 @@ absl::Status Damaged(const ArchivedJob& job, const char* what) {
 }  // namespace
 
 std::string ProtoJobFormat::WriteMessage(const JobRecord& job) const {
-  return JobToProto(*job.spec, *job.state, JobView::kWhole).SerializeAsString();
+  v1::Job message = JobToProto(*job.spec, *job.state, JobView::kWhole);
+  if (!job.spec->webhook.empty()) message.mutable_webhook()->set_url(job.spec->webhook);
+  return message.SerializeAsString();
 }
+
+std::string ProtoJobFormat::WriteEvent(const JobRecord& job) const { return WebhookBody(job, build_); }
 
 std::optional<std::string> ProtoJobFormat::WriteResult(const JobRecord& job) const {
   const auto result = MakeResult(job, build_);
@@ -73,6 +78,7 @@ absl::StatusOr<JobRecord> ProtoJobFormat::Read(const ArchivedJob& archived, cons
   spec->settings = SettingsFromProto(job.settings(), diagnostics);
   spec->plan = PlanFromProto(job.plan());
   spec->job_key = result.job_key();
+  spec->webhook = job.webhook().url();
   spec->create_time = TimeOf(job.create_time());
   state->sequence = archived.sequence;
   state->phase = PhaseOf(job.state());

@@ -16,6 +16,7 @@ class ProtoJobFormat final : public JobFormat {
 
   std::string WriteMessage(const JobRecord& job) const override;
   std::optional<std::string> WriteResult(const JobRecord& job) const override;
+  std::string WriteEvent(const JobRecord& job) const override;
   absl::StatusOr<JobRecord> Read(const ArchivedJob& job, const std::string* result) const override;
 
  private:

@@ -49,6 +49,7 @@ const std::vector<PolicyRow>& Policy() {
       {"UnshareSceneRequest", Role::kStudent},
       {"ValidateSceneRequest", Role::kStudent},
       {"GetCapabilitiesRequest", Role::kStudent},
+      {"GetWebhookSecretRequest", Role::kStudent},
       {"GetActivityRequest", Role::kStudent},  // Students see others only as numbers.
   };
   return kPolicy;

@@ -18,6 +18,7 @@
 #include "server/service/quota_calls.h"
 #include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
+#include "server/service/webhook_calls.h"
 #include "server/store/error.h"
 #include "server/store/sha256.h"
 
@@ -101,6 +102,7 @@ absl::StatusOr<JobRun::Restored> MakeJob(Backend& backend, const Caller& caller,
   spec.plan = std::move(planned->plan);
   spec.job_key = JobKey(spec, backend.version);
   spec.sharers = Sharers(backend, request, spec.owner);
+  spec.webhook = request.webhook();
   // Where a time limit ends a job is never the same.
   if (!request.anew() && !spec.plan.settings.time_limit) spec.work_key = spec.job_key + ' ' + spec.sharers;
   return JobRun::Restored{std::make_shared<JobSpec>(std::move(spec)), std::move(planned->scene), {}};
@@ -131,10 +133,11 @@ absl::StatusOr<Submission> MakeSubmission(Backend& backend, const v1::CreateJobR
 
 v1::Job WholeJob(const JobRecord& job) { return JobToProto(*job.spec, *job.state, JobView::kWhole); }
 
-// With its shares, which are for those who may change them.
+// With its shares and its webhook, which are for those who may change them.
 absl::StatusOr<v1::Job> SharedJob(Backend& backend, const Caller& caller, const JobRecord& record) {
   v1::Job job = WholeJob(record);
   if (RightByRole(caller, *record.spec) < JobRight::kOwn) return job;
+  if (absl::Status told = TellWebhook(backend.webhooks, *record.spec, job); !told.ok()) return told;
   const auto grants = backend.jobs.GrantsOf(record.spec->id);
   if (!grants.ok()) return grants.status();
   for (const Grant& grant : *grants) *job.add_shares() = GrantToProto(grant);
@@ -200,14 +203,20 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
   spec.owner = caller.name;
   spec.job_class = *job_class;
   spec.create_time = std::chrono::system_clock::now();
+  if (!request.webhook().empty()) {
+    if (absl::Status allowed = CheckWebhook(backend, caller, request.webhook()); !allowed.ok()) return allowed;
+  }
   auto made = MakeJob(backend, caller, *whole, std::move(spec), proceed);
   if (!made.ok()) return made.status();
   absl::StatusOr<Submission> submission = Submission{};
   if (backend.jobs.durable()) submission = MakeSubmission(backend, *whole);
   if (!submission.ok()) return submission.status();
+  submission->webhook = request.webhook();
   const auto job = backend.scheduler.Submit(std::move(made->spec), std::move(made->scene), *submission, *key, quotas);
   if (!job.ok()) return job.status();
-  return WholeJob(*job);
+  v1::Job answer = WholeJob(*job);
+  if (absl::Status told = TellWebhook(backend.webhooks, *job->spec, answer); !told.ok()) return told;
+  return answer;
 }
 
 absl::StatusOr<JobRun::Restored> RestoreJob(Backend& backend, JobArchive& archive, const JobSpec& accepted) {

@@ -228,6 +228,7 @@ v1::GetCapabilitiesResponse GetCapabilities(Backend& backend, const Caller& call
   response.set_processor(ProcessorModel());
   response.set_processors(UsableProcessors());
   *response.mutable_quotas() = QuotasToProto(backend, caller);
+  for (const std::string& host : backend.webhook_rules.hosts()) response.add_webhook_hosts(host);
   return response;
 }
 

@@ -5,6 +5,7 @@
 #include "server/service/call.h"
 #include "server/service/scene_calls.h"
 #include "server/service/scene_lane.h"
+#include "server/service/webhook_calls.h"
 
 namespace flatlight {
 namespace {
@@ -80,6 +81,15 @@ grpc::ServerUnaryReactor* ServerService::GetActivity(grpc::CallbackServerContext
                                         [this](const Caller& caller, const v1::GetActivityRequest& r) {
                                           return flatlight::GetActivity(backend_, caller, r);
                                         });
+}
+
+grpc::ServerUnaryReactor* ServerService::GetWebhookSecret(grpc::CallbackServerContext* context,
+                                                          const grpc::ByteBuffer* request, grpc::ByteBuffer* response) {
+  return Answer<v1::GetWebhookSecretRequest>(
+      backend_, context, request, response, kInlineLane,
+      [this](const Caller& caller, const v1::GetWebhookSecretRequest&) {
+        return absl::StatusOr<v1::GetWebhookSecretResponse>(flatlight::GetWebhookSecret(backend_, caller));
+      });
 }
 
 }  // namespace flatlight

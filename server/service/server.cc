@@ -37,9 +37,13 @@
 #include "server/store/memory_job_store.h"
 #include "server/store/memory_scene_store.h"
 #include "server/store/random_bytes.h"
+#include "server/store/schema.h"
 #include "server/store/storage.h"
+#include "server/store/webhook_outbox.h"
 #include "server/telemetry/json_log.h"
 #include "server/telemetry/metrics.h"
+#include "server/webhook/webhook_rules.h"
+#include "server/webhook/webhook_sender.h"
 
 namespace flatlight {
 namespace {
@@ -101,8 +105,13 @@ struct Logs {
 // In the order in which they need each other; destroyed in reverse.
 struct Server::Parts {
   Parts(const ServerOptions& options, std::unique_ptr<Storage> opened, Logs opened_logs,
-        std::unique_ptr<Database> users, std::unique_ptr<Database> for_rooms)
+        std::unique_ptr<Database> users, std::unique_ptr<Database> for_rooms, std::unique_ptr<WebhookOutbox> outbox,
+        const std::string& webhook_key)
       : logs(std::move(opened_logs)),
+        webhook_rules(options.webhook_rules),
+        webhooks(std::move(outbox)),
+        webhook_sender(options.webhooks, webhook_rules, *webhooks, webhook_key, "flatlightd/" + BuildVersion(),
+                       [this](const WebhookAttempt& attempt) { NoteWebhook(attempt); }),
         pool(options.threads),
         storage(std::move(opened)),
         quotas(options.quotas),
@@ -138,7 +147,10 @@ struct Server::Parts {
                 .hub = hub,
                 .quick = quick,
                 .slow = slow,
-                .telemetry = telemetry},
+                .telemetry = telemetry,
+                .webhook_rules = webhook_rules,
+                .webhooks = *webhooks,
+                .webhook_key = webhook_key},
         render_service(backend, hub),
         scene_service(backend),
         server_service(backend),
@@ -158,16 +170,35 @@ struct Server::Parts {
     for (const JsonLog* log : {logs.calls.get(), logs.audit.get()}) {
       if (log != nullptr) now.lost_log_lines += static_cast<double>(log->lost_lines());
     }
+    now.open_webhooks = static_cast<double>(webhooks->OpenOf(std::nullopt).value_or(0));
     const std::lock_guard lock(health_mutex);
     now.storage_healthy = storage_healthy;
     return now;
   }
 
+  // Each attempt in the log of calls, in the audit log what nothing follows. Of the URL no more than the host: the rest
+  // may be secret.
+  void NoteWebhook(const WebhookAttempt& attempt) {
+    metrics.WebhookTried(NameOf(attempt.outcome));
+    JsonLog::Line line;
+    line["webhook"] = NameOf(attempt.outcome);
+    line["caller"] = attempt.webhook.owner;
+    line["resource"] = attempt.webhook.job.Name();
+    line["host"] = WebhookHost(attempt.webhook.url);
+    line["attempt"] = attempt.webhook.attempts;
+    if (!attempt.error.empty()) line["error"] = attempt.error;
+    if (logs.calls != nullptr) logs.calls->Write(line);
+    if (logs.audit != nullptr && attempt.outcome != WebhookAttempt::Outcome::kFailed) logs.audit->Write(line);
+  }
+
   std::unique_ptr<JobStore> MakeJobStore(const ServerOptions& options) {
     const std::size_t most = options.limits.max_jobs;
+    const auto webhook_is_due = [this] { webhook_sender.Wake(); };
     if (archive == nullptr) {
-      return std::make_unique<MemoryJobStore>(MemoryJobStore::Limits{.max_jobs = most}, clock);
+      return std::make_unique<MemoryJobStore>(MemoryJobStore::Limits{.max_jobs = most}, clock,
+                                              MemoryJobStore::Webhooks{*webhooks, format, webhook_is_due});
     }
+    archive->WhenWebhookIsDue(webhook_is_due);
     DurableJobStore::Options durable_options;
     durable_options.memory.max_jobs = most;
     durable_options.memory.max_ended_bytes = kMaxCachedResultBytes;
@@ -237,6 +268,9 @@ struct Server::Parts {
   Metrics metrics{BuildVersion()};
   Logs logs;
   CallTelemetry telemetry{metrics, logs.calls.get(), logs.audit.get(), kServices};
+  const WebhookRules webhook_rules;
+  const std::unique_ptr<WebhookOutbox> webhooks;
+  WebhookSender webhook_sender;
   IndexCache indexes{kMaxIndexedElements, kMaxSolvedBytes};
   ThreadPool pool;
   std::unique_ptr<Storage> storage;  // Null, as are the archive and `durable`: nothing outlives the process.
@@ -314,13 +348,20 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
     if (!connection.ok()) return connection.status();
     users = *std::move(connection);
   }
-  auto for_rooms =
-      options.data.empty() ? RoomStore::NewMemory() : Database::OpenExisting(Storage::DatabasePath(options.data));
+  const auto connect = [&] {
+    return options.data.empty() ? NewMemoryDatabase() : Database::OpenExisting(Storage::DatabasePath(options.data));
+  };
+  auto for_rooms = connect();
   if (!for_rooms.ok()) return for_rooms.status();
+  auto for_webhooks = connect();
+  if (!for_webhooks.ok()) return for_webhooks.status();
+  auto webhooks = std::make_unique<WebhookOutbox>(*std::move(for_webhooks));
+  const auto webhook_key = webhooks->Key();
+  if (!webhook_key.ok()) return webhook_key.status();
   Logs logs;
   if (absl::Status opened = logs.Open(options); !opened.ok()) return opened;
-  auto parts =
-      std::make_unique<Parts>(options, std::move(storage), std::move(logs), std::move(users), *std::move(for_rooms));
+  auto parts = std::make_unique<Parts>(options, std::move(storage), std::move(logs), std::move(users),
+                                       *std::move(for_rooms), std::move(webhooks), *webhook_key);
   parts->tls = std::move(tls);
   if (!address->of_this_machine) {
     const auto knows = parts->backend.guard.KnowsEverybody();
@@ -370,6 +411,7 @@ void Server::Drain(std::chrono::milliseconds grace) {
   parts.scheduler.Stop();
   parts.ledger.Close();
   if (parts.durable != nullptr) parts.durable->Close();
+  parts.webhook_sender.Close(grace);
   parts.backend.calls.AwaitNone(grace);
   // Answers are on their way; what remains is to write them, and idle connections.
   parts.grpc->Shutdown(std::chrono::system_clock::now() + std::min(grace, kFlush));

@@ -14,6 +14,8 @@
 #include "server/scheduler/scheduler.h"
 #include "server/service/limits.h"
 #include "server/service/tls_files.h"
+#include "server/webhook/webhook_rules.h"
+#include "server/webhook/webhook_sender.h"
 
 namespace flatlight {
 
@@ -27,6 +29,8 @@ struct ServerOptions {
   std::string data;   // A folder for what is to outlive the process; empty: nothing does.
   Limits limits;
   QuotaTable quotas;
+  WebhookRules webhook_rules;  // Who may be told of the end of jobs: nobody.
+  WebhookSender::Options webhooks;
   std::string metrics_address;  // A loopback address and port for Prometheus; empty: none is served.
   std::string log;              // A file for a line about each call, or "-"; empty: none.
   std::chrono::milliseconds checkpoint_interval{3000};  // Of a job, at least. With `data`.

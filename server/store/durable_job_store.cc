@@ -237,8 +237,9 @@ bool DurableJobStore::WriteEnd(std::unique_lock<std::mutex>& lock, const JobId& 
   const JobRecord job = unwritten_.at(id).job;
   const bool shown = unwritten_.at(id).shown;
   lock.unlock();
+  const std::string event = job.spec->webhook.empty() ? "" : format_.WriteEvent(job);
   const absl::Status written =
-      archive_.End(id, format_.WriteMessage(job), job.state->sequence, format_.WriteResult(job), Now());
+      archive_.End(id, format_.WriteMessage(job), job.state->sequence, format_.WriteResult(job), Now(), event);
   const bool deleted = absl::IsNotFound(written);
   if (!shown && !deleted) memory_.Update(job).IgnoreError();
   lock.lock();

@@ -15,19 +15,10 @@
 #include "absl/base/thread_annotations.h"
 #include "core/execution/clock.h"
 #include "server/store/job_archive.h"
+#include "server/store/job_format.h"
 #include "server/store/memory_job_store.h"
 
 namespace flatlight {
-
-// What jobs look like when they are written. The result of a job that has no field is nothing.
-class JobFormat {
- public:
-  virtual ~JobFormat() = default;
-  virtual std::string WriteMessage(const JobRecord& job) const = 0;
-  virtual std::optional<std::string> WriteResult(const JobRecord& job) const = 0;
-  // Without a result: without a field, and without the probes of its scene.
-  virtual absl::StatusOr<JobRecord> Read(const ArchivedJob& job, const std::string* result) const = 0;
-};
 
 // Jobs that outlive the process. Those that have not ended are held in memory, as are some that have; all are in an
 // archive: a job before Insert returns, its end before anybody sees it. If the end cannot be written (a full disk), it
@@ -57,7 +48,10 @@ class DurableJobStore final : public JobStore {
                                    const std::optional<RequestKey>& key) override;
   absl::Status Update(const JobRecord& job) override;
   absl::StatusOr<JobRecord> Get(const JobId& id) override;
-  bool IsAtHand(const JobId& id) override { return memory_.Get(id).ok(); }
+  bool IsAtHand(const JobId& id) override {
+    const auto job = memory_.Get(id);
+    return job.ok() && job->spec->webhook.empty();
+  }
   absl::StatusOr<JobRecord> GetWhole(const JobId& id) override;
   absl::StatusOr<JobPage> List(const std::optional<std::string>& owner, std::optional<std::uint64_t> before,
                                std::size_t limit) override;

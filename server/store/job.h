@@ -36,6 +36,7 @@ struct JobSpec {
   // Jobs of equal ones do the same work, and may tell of each other by sharing it. Empty: this one does its own.
   std::string work_key;
   std::optional<std::string> records_checksum;  // Of those that the request brought.
+  std::string webhook;                          // The URL that is told of the job's end; empty: none is.
   WallTime create_time;
 };
 

@@ -6,6 +6,7 @@
 
 #include "server/store/error.h"
 #include "server/store/grant_table.h"
+#include "server/store/webhook_table.h"
 
 namespace flatlight {
 namespace {
@@ -142,7 +143,9 @@ absl::StatusOr<JobId> JobArchive::Insert(const JobId& id, const std::string& own
         "VALUES(?, ?, ?, ?, ?, 0, ?, ?)");
     job.Bind(std::string_view(id.uuid())).Bind(std::string_view(owner)).Bind(std::string_view(request->sha256));
     job.Bind(scene ? std::optional(scene->sha256) : std::nullopt).BindBlob(message).Bind(std::string_view(build_));
-    return job.Bind(stored_bytes).Run();
+    if (absl::Status inserted = job.Bind(stored_bytes).Run(); !inserted.ok()) return inserted;
+    if (submission.webhook.empty()) return absl::OkStatus();
+    return InsertWebhook(writing.database(), id, owner, submission.webhook);
   });
   if (!written.ok()) return written;
   if (made == id) AddStoredBytes(owner, stored_bytes);
@@ -178,7 +181,7 @@ absl::Status JobArchive::SavePause(const JobId& id, bool paused) {
 }
 
 absl::Status JobArchive::End(const JobId& id, std::string message, std::uint64_t sequence,
-                             std::optional<std::string> result, WallTime now) {
+                             std::optional<std::string> result, WallTime now, const std::string& event) {
   std::optional<Blob> blob;
   if (result) {
     auto prepared = storage_.Prepare(*std::move(result));
@@ -187,6 +190,7 @@ absl::Status JobArchive::End(const JobId& id, std::string message, std::uint64_t
   }
   const std::int64_t stored_bytes = blob ? static_cast<std::int64_t>(blob->bytes->size()) : 0;
   std::string owner;
+  bool webhook_is_due = false;
   absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
     const auto number = NumberOf(writing.database(), id);
     if (!number.ok()) return number.status();
@@ -199,6 +203,11 @@ absl::Status JobArchive::End(const JobId& id, std::string message, std::uint64_t
     owner = old.Bytes(3);
     for (int column = 0; column < 3; ++column) {
       if (absl::Status less = writing.Release(old.OptionalBytes(column)); !less.ok()) return less;
+    }
+    if (!event.empty()) {
+      const auto due = MakeWebhookDue(writing.database(), id, event);
+      if (!due.ok()) return due.status();
+      webhook_is_due = *due;
     }
     return writing
         .Prepare(
@@ -214,6 +223,7 @@ absl::Status JobArchive::End(const JobId& id, std::string message, std::uint64_t
         .Run();
   });
   if (written.ok()) AddStoredBytes(owner, stored_bytes);
+  if (written.ok() && webhook_is_due) webhook_due_();
   return written;
 }
 

@@ -4,11 +4,13 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
@@ -48,9 +50,12 @@ class JobArchive {
   absl::Status SaveCheckpoint(const JobId& id, std::string checkpoint);
   // Whether a job that has not ended is paused. Nothing happens to one that has ended, or is gone.
   absl::Status SavePause(const JobId& id, bool paused);
-  // The last change of a job: nothing remains but message and result. `sequence` > 0.
+  // The last change of a job: nothing remains but message and result. `sequence` > 0. `event` is sent to its webhook, if
+  // it has one.
   absl::Status End(const JobId& id, std::string message, std::uint64_t sequence, std::optional<std::string> result,
-                   WallTime now);
+                   WallTime now, const std::string& event = "");
+  // `due` is called after each end that a webhook is to be told of. To be called once, first.
+  void WhenWebhookIsDue(std::function<void()> due) { webhook_due_ = std::move(due); }
   absl::Status Delete(const JobId& id);
   absl::Status Share(const JobId& id, const Grant& grant);
   absl::Status Unshare(const JobId& id, const Grantee& grantee);
@@ -90,6 +95,7 @@ class JobArchive {
 
   Storage& storage_;
   const std::string build_;
+  std::function<void()> webhook_due_ = [] {};
   std::mutex stored_mutex_;
   StoredBytes stored_bytes_ ABSL_GUARDED_BY(stored_mutex_);
   std::mutex grants_mutex_;

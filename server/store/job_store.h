@@ -34,6 +34,7 @@ struct Submission {
   std::string request;
   std::string scene_sha256;                  // Of the uploaded file that the request names.
   std::shared_ptr<const std::string> scene;  // Its bytes; null: it names none.
+  std::string webhook = {};                  // As JobSpec's.
 };
 
 struct JobPage {
@@ -59,7 +60,7 @@ class JobStore {
   // The field of a job that has ended may be left out.
   virtual absl::StatusOr<JobRecord> Get(const JobId& id) = 0;
   virtual absl::StatusOr<JobRecord> GetWhole(const JobId& id) { return Get(id); }
-  // Whether Get answers at once: without a look at the disk, which may take a while.
+  // Whether Get and what is told of the job's webhook come at once: without a look at the disk, which may take a while.
   virtual bool IsAtHand(const JobId& /*id*/) { return true; }
   // At most `limit` jobs of `owner`, or of all, from the newest one, or from the newest one older than `before`. As
   // many as that if there are so many. Fields may be left out.

@@ -51,7 +51,7 @@ absl::StatusOr<std::optional<JobId>> MemoryJobStore::FindRequestLocked(const Req
   return std::optional<JobId>(found->second.job);
 }
 
-absl::StatusOr<JobRecord> MemoryJobStore::Insert(JobRecord job, const Submission&,
+absl::StatusOr<JobRecord> MemoryJobStore::Insert(JobRecord job, const Submission& submission,
                                                  const std::optional<RequestKey>& key) {
   const std::lock_guard lock(mutex_);
   if (key) {
@@ -66,6 +66,10 @@ absl::StatusOr<JobRecord> MemoryJobStore::Insert(JobRecord job, const Submission
   if (const auto number = numbers_.find(job.spec->id); number != numbers_.end()) return jobs_.at(number->second).job;
   const double bytes = HasEnded(job.state->phase) ? EstimateEndedBytes(*job.spec) : EstimateBytes(*job.spec);
   if (absl::Status room = MakeRoom(bytes); !room.ok()) return room;
+  if (webhooks_ && !submission.webhook.empty()) {
+    absl::Status noted = webhooks_->outbox.Insert(job.spec->id, job.spec->owner, submission.webhook);
+    if (!noted.ok()) return noted;
+  }
   bytes_ += bytes;
   const std::uint64_t number = next_number_++;
   numbers_[job.spec->id] = number;
@@ -131,6 +135,7 @@ void MemoryJobStore::Erase(std::uint64_t number) {
     ended_bytes_ -= entry.bytes;
     ended_.erase(entry.end);
   }
+  if (webhooks_ && !entry.job.spec->webhook.empty()) webhooks_->outbox.Detach(entry.job.spec->id).IgnoreError();
   numbers_.erase(entry.job.spec->id);
   jobs_.erase(job);
 }
@@ -147,7 +152,13 @@ absl::Status MemoryJobStore::Update(const JobRecord& job) {
     entry.bytes = EstimateBytes(*job.spec);
     bytes_ += entry.bytes;
   }
-  if (entry.end == 0 && HasEnded(entry.job.state->phase)) NoteEnd(number->second, entry);
+  if (entry.end == 0 && HasEnded(entry.job.state->phase)) {
+    NoteEnd(number->second, entry);
+    if (webhooks_ && !job.spec->webhook.empty()) {
+      webhooks_->outbox.MakeDue(job.spec->id, webhooks_->format.WriteEvent(job)).IgnoreError();
+      webhooks_->due();
+    }
+  }
   return absl::OkStatus();
 }
 

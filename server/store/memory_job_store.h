@@ -6,14 +6,18 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "absl/base/thread_annotations.h"
 #include "core/execution/clock.h"
+#include "server/store/job_format.h"
 #include "server/store/job_store.h"
+#include "server/store/webhook_outbox.h"
 
 namespace flatlight {
 
@@ -26,7 +30,15 @@ class MemoryJobStore final : public JobStore {
     double max_ended_bytes = 1e9;  // Of the results of jobs that have ended, estimated.
     std::size_t max_requests = 100'000;
   };
-  MemoryJobStore(const Limits& limits, const Clock& clock) : limits_(limits), clock_(clock) {}
+  // Where webhooks of its jobs are kept, what they are told, and who is told that one is due.
+  struct Webhooks {
+    WebhookOutbox& outbox;
+    const JobFormat& format;
+    std::function<void()> due;
+  };
+  // What is passed in must outlive the store.
+  MemoryJobStore(const Limits& limits, const Clock& clock, std::optional<Webhooks> webhooks = std::nullopt)
+      : limits_(limits), clock_(clock), webhooks_(std::move(webhooks)) {}
 
   absl::StatusOr<std::optional<JobId>> FindRequest(const RequestKey& key) override;
   absl::StatusOr<JobRecord> Insert(JobRecord job, const Submission& submission,
@@ -69,6 +81,7 @@ class MemoryJobStore final : public JobStore {
 
   const Limits limits_;
   const Clock& clock_;
+  const std::optional<Webhooks> webhooks_;
   std::mutex mutex_;
   std::uint64_t next_number_ ABSL_GUARDED_BY(mutex_) = 1;
   double bytes_ ABSL_GUARDED_BY(mutex_) = 0;

@@ -151,6 +151,32 @@ CREATE TABLE cpu_days(
 ALTER TABLE jobs ADD COLUMN stored_bytes INTEGER;
 )sql";
 
+// Whom to tell of the end of which job, and how far that is. Times are ms since 1970.
+constexpr char kWebhooks[] = R"sql(
+CREATE TABLE webhooks(
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  job TEXT NOT NULL UNIQUE,              -- Its uuid.
+  owner TEXT NOT NULL,
+  url TEXT NOT NULL,
+  body TEXT,                             -- What is to be sent; null: the job has not ended, or all is done.
+  due INTEGER,                           -- When it is; null likewise.
+  attempts INTEGER NOT NULL DEFAULT 0,
+  error TEXT NOT NULL DEFAULT '',        -- Of the last attempt.
+  end_time INTEGER,                      -- Since when all is done; null: it is not.
+  detached INTEGER NOT NULL DEFAULT 0    -- Its job is gone: when all is done, so is this.
+);
+CREATE INDEX webhooks_by_due ON webhooks(due) WHERE due IS NOT NULL;
+CREATE INDEX webhooks_that_are_open ON webhooks(owner) WHERE end_time IS NULL;
+CREATE TRIGGER jobs_detach_webhooks AFTER DELETE ON jobs BEGIN
+  DELETE FROM webhooks WHERE job = OLD.uuid AND due IS NULL;
+  UPDATE webhooks SET detached = 1 WHERE job = OLD.uuid;
+END;
+CREATE TABLE secrets(
+  name TEXT PRIMARY KEY,
+  value BLOB NOT NULL
+) WITHOUT ROWID;
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -162,7 +188,8 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 
 const std::vector<std::string>& Migrations() {
   static const std::vector<std::string> kMigrations = {kJobs,  kScenes,      kUsers,       kPauses, kGrants,
-                                                       kRooms, kSceneOwners, kJobsByOwner, kQuotas, kSceneGrants};
+                                                       kRooms, kSceneOwners, kJobsByOwner, kQuotas, kSceneGrants,
+                                                       kWebhooks};
   return kMigrations;
 }
 
@@ -183,6 +210,13 @@ absl::Status Migrate(Database& database, std::size_t newest) {
     if (absl::Status committed = transaction.Commit(); !committed.ok()) return committed;
   }
   return absl::OkStatus();
+}
+
+absl::StatusOr<std::unique_ptr<Database>> NewMemoryDatabase() {
+  auto database = Database::Open(":memory:");
+  if (!database.ok()) return database;
+  if (absl::Status migrated = Migrate(**database); !migrated.ok()) return migrated;
+  return database;
 }
 
 }  // namespace flatlight

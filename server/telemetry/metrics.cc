@@ -103,6 +103,8 @@ class Looks final : public prometheus::Collectable {
                                 MetricType::Counter, now.conflated));
     families.push_back(OneValue("flatlight_log_lines_lost_total", "Lines that could not be written to a log.",
                                 MetricType::Counter, now.lost_log_lines));
+    families.push_back(OneValue("flatlight_webhooks_open", "Webhooks that wait for their job, or to be taken.",
+                                MetricType::Gauge, now.open_webhooks));
     families.push_back(OneValue("flatlight_storage_healthy", "1 while the data folder can be written, else 0.",
                                 MetricType::Gauge, now.storage_healthy ? 1 : 0));
     return families;
@@ -164,6 +166,8 @@ struct Metrics::Parts {
       Histograms("flatlight_call_seconds", "How long calls took, streams to their end.");
   prometheus::Family<prometheus::Counter>& refusals =
       Counters("flatlight_refusals_total", "Calls that were answered by an error, by its reason.");
+  prometheus::Family<prometheus::Counter>& webhooks =
+      Counters("flatlight_webhook_attempts_total", "Attempts to tell of a job's end, by what came of them.");
   prometheus::Family<prometheus::Counter>& sent =
       Counters("flatlight_sent_bytes_total", "Bytes of answers, before compression and framing.");
 };
@@ -230,6 +234,8 @@ void Metrics::CallEnded(Method& method, absl::StatusCode code, const std::string
   }
   if (!reason.empty()) parts_->refusals.Add({{"reason", reason}}).Increment();
 }
+
+void Metrics::WebhookTried(const std::string& outcome) { parts_->webhooks.Add({{"outcome", outcome}}).Increment(); }
 
 void Metrics::ReadWith(std::function<Readings()> read) { parts_->looks->ReadWith(std::move(read)); }
 

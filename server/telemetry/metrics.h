@@ -21,6 +21,7 @@ struct Readings {
   double updates = 0;          // Complete states sent.
   double conflated = 0;        // States that a watcher was spared, as newer ones came before it could take them.
   double lost_log_lines = 0;
+  double open_webhooks = 0;  // At this moment, as the next.
   bool storage_healthy = true;
 };
 
@@ -43,6 +44,8 @@ class Metrics final : public SchedulerEvents {
   Method& MethodOf(const std::string& name);
   // A call has its answer: `reason` of an error's ErrorInfo, empty if there is none.
   void CallEnded(Method& method, absl::StatusCode code, const std::string& reason, double seconds, double sent_bytes);
+  // One attempt to tell of a job's end, by what came of it.
+  void WebhookTried(const std::string& outcome);
   // Called at each look until Close.
   void ReadWith(std::function<Readings()> read);
   void Close();

@@ -26,6 +26,7 @@ LAYERS = [
     ["server/scheduler"],
     ["server/telemetry"],
     ["server/review"],
+    ["server/webhook"],
     ["server/service"],
     ["server/app"],
 ]
@@ -42,6 +43,7 @@ FORBIDDEN_INCLUDES = [
     ("server/scheduler", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
     ("server/telemetry", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
     ("server/review", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
+    ("server/webhook", r"(grpc|.*\.grpc\.pb\.h$)", "only the service and the app know gRPC"),
 ]
 
 MAX_LINES = 499

@@ -22,6 +22,7 @@ CommandResult RunCommand(const CommandLine& line, Interruption& interruption) {
       {"top", Top},
       {"health", Health},
       {"quota", ShowQuotas},
+      {"webhook-secret", ShowWebhookSecret},
       {"show", Show},
       {"fetch", Fetch},
       {"cancel", Cancel},

@@ -54,6 +54,7 @@ CommandResult Top(const CommandLine& line, Interruption& interruption);
 
 // quota_command.cc
 CommandResult ShowQuotas(const CommandLine& line, Interruption& interruption);
+CommandResult ShowWebhookSecret(const CommandLine& line, Interruption& interruption);
 
 // health_command.cc
 CommandResult Health(const CommandLine& line, Interruption& interruption);

@@ -20,6 +20,17 @@ constexpr char kAnonymous[] = "anonymous";  // Everybody, at a server without us
 
 std::string Uuid(const v1::Job& job) { return job.name().substr(job.name().find('/') + 1); }
 
+std::string WebhookText(const v1::Webhook& webhook) {
+  std::string text = Printable(webhook.url()) + ", " + OptionName(webhook.state());
+  if (webhook.has_end_time()) text += " " + TimeUtil::ToString(webhook.end_time());
+  if (!webhook.error().empty()) {
+    text += " after " + std::to_string(webhook.attempts()) + (webhook.attempts() == 1 ? " attempt" : " attempts");
+    text += ", the last one: " + Printable(webhook.error());
+  }
+  if (webhook.has_next_attempt_time()) text += "; the next one " + TimeUtil::ToString(webhook.next_attempt_time());
+  return text;
+}
+
 }  // namespace
 
 std::string JobListText(const std::vector<v1::Job>& jobs, double now, WhoseJobs whose) {
@@ -50,6 +61,7 @@ std::string JobText(const v1::Job& job) {
   rows.push_back({"state", OptionName(job.state()) + end});
   if (!job.owner().empty() && job.owner() != kAnonymous) rows.push_back({"owner", Printable(job.owner())});
   if (!job.shares().empty()) rows.push_back({"shared", SharesText(job.shares())});
+  if (job.has_webhook()) rows.push_back({"webhook", WebhookText(job.webhook())});
   if (job.has_error()) rows.push_back({"error", Printable(job.error().message())});
   rows.push_back({"progress", ProgressLine(job, 0)});
   if (job.progress().samples() > 0)

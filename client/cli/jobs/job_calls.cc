@@ -31,6 +31,7 @@ absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource&
   request.set_job_class(options.job_class);
   if (options.records) *request.mutable_records() = *options.records;
   request.set_anew(options.anew);
+  request.set_webhook(options.webhook);
   request.set_request_id(NewUuid());
   v1::Job job;
   absl::Status status;

@@ -14,7 +14,8 @@ namespace flatlight {
 struct CreateJobOptions {
   v1::JobClass job_class = v1::INTERACTIVE;
   std::optional<v1::KnownRecords> records = std::nullopt;
-  bool anew = false;  // Does its own work, also if that of an equal job could be shared.
+  bool anew = false;         // Does its own work, also if that of an equal job could be shared.
+  std::string webhook = {};  // A URL that the server tells of the job's end; empty: none.
 };
 
 // Repeats itself if the server was lost on the way; a request id makes sure that there is one job.

@@ -187,7 +187,13 @@ void AddSceneCommands(CLI::App& app, Raw& raw) {
     }
     if (render) AddCancelOnDisconnect(command, raw);
     if (render) AddOutputs(command, raw);
-    if (submit) AddJobClass(command, raw);
+    if (submit) {
+      AddJobClass(command, raw);
+      command
+          .add_option("--webhook", raw.line.webhook,
+                      "the server sends this URL a signed POST when the job has ended (see webhook-secret)")
+          ->type_name("URL");
+    }
     AddJson(command, raw, render ? "the result" : submit ? "the job" : "the plan");
     if (render || submit) AddQuiet(command, raw);
     AddServer(command, raw);
@@ -251,6 +257,9 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   AddJson(top, raw, "the activity");
   CLI::App& quota = AddCommand(app, "quota", "show what you may have of a server, and what you have", kQuotaHelp);
   AddJson(quota, raw, "the same");
+  CLI::App& secret =
+      AddCommand(app, "webhook-secret", "print with what webhooks of your jobs are signed; keep it secret", kSecretHelp);
+  AddServer(secret, raw);
   CLI::App& health = AddCommand(app, "health", "ask a server whether it serves; needs no token", kHealthHelp);
   AddQuiet(health, raw);
   AddServer(health, raw);

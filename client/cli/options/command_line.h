@@ -40,6 +40,7 @@ struct CommandLine {
   v1::Settings settings;
   v1::JobClass job_class = v1::INTERACTIVE;  // Of `submit`.
   bool anew = false;                         // Of `render` and `submit`.
+  std::string webhook;                       // Of `submit`: a URL; empty if not given.
   std::string known_records;                 // Of --records: a result file or jobs/UUID; empty if not given.
   std::vector<v1::Probe> probes;             // Of --picture: in place of the scene's own.
   std::vector<std::string> outputs;

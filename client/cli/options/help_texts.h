@@ -63,6 +63,10 @@ inline constexpr char kQuotaHelp[] =
     R"(What is over a limit is refused, with exit status 4 and when to try again. Jobs of who has used up the processor time of a
 day rest, and go on by themselves at 00:00 UTC.)";
 
+inline constexpr char kSecretHelp[] =
+    R"(The same secret for all of your jobs, for as long as the server keeps its folder. Receivers check with it the header
+webhook-signature, as the Standard Webhooks specification has it.)";
+
 inline constexpr char kHealthHelp[] =
     R"(For health checks of containers and the like: exit status 0 if the server says that it serves, 3 if it says that it does
 not, as while it is ending, or says nothing for 3 s.)";

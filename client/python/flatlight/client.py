@@ -69,14 +69,17 @@ class Client:
         except grpc.RpcError as error:
             raise error_of(error, self.address) from None
 
-    def submit(self, scene, *, probes=(), job_class=None, request_id=None, anew=False, settings=None, **keywords):
+    def submit(self, scene, *, probes=(), job_class=None, request_id=None, anew=False, webhook="", settings=None,
+               **keywords):
         """Submits a job and returns it at once. `scene`: gallery:NAME, a file's path, a dictionary in the file's form.
         Settings are keywords (method="path-tracing", target_error=0.01) or a flatlight.v1.Settings. `job_class`:
         interactive, graded or regrade. The same `request_id` (a UUID) finds the job of the first call.
-        `anew`: the job does its own work, also if an equal one of the server has done it."""
+        `anew`: the job does its own work, also if an equal one of the server has done it. `webhook`: a URL that the server
+        sends a POST when the job has ended, signed with webhook_secret()."""
         request = render_service_pb2.CreateJobRequest(scene=scenes.provide(self, scene, probes),
                                                       settings=_settings(settings, keywords),
-                                                      request_id=request_id or str(uuid.uuid4()), anew=anew)
+                                                      request_id=request_id or str(uuid.uuid4()), anew=anew,
+                                                      webhook=webhook)
         if job_class is not None:
             request.job_class = enum_value(request.DESCRIPTOR.fields_by_name["job_class"].enum_type, job_class, "job_class")
         return Job(self, self.call(self.render_service.CreateJob, request))
@@ -138,6 +141,10 @@ class Client:
         request = render_service_pb2.ExplainJobRequest(scene=scenes.provide(self, scene, probes),
                                                        settings=_settings(settings, keywords))
         return self.call(self.render_service.ExplainJob, request).plan
+
+    def webhook_secret(self):
+        """With what webhooks of one's own jobs are signed: "whsec_…", as the Standard Webhooks specification has it."""
+        return self.call(self.server_service.GetWebhookSecret, server_service_pb2.GetWebhookSecretRequest()).secret
 
     def capabilities(self):
         """What the server is and allows: flatlight.v1.GetCapabilitiesResponse."""

@@ -44,6 +44,11 @@ class Job:
         """With whom it is shared, as {"user:ada": "READ", "course": "CONTROL"}: for those who may share it."""
         return {share.grantee: Share.Access.Name(share.access) for share in self.message.shares}
 
+    @property
+    def webhook(self):
+        """Who is told of the job's end, and how far that is: flatlight.v1.Webhook. For those who may share the job."""
+        return self.message.webhook
+
     def refresh(self):
         self.message = self._client.call(self._client.render_service.GetJob, api.GetJobRequest(name=self.name))
         return self

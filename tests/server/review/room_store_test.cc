@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/review/room_store.h"
+#include "server/store/schema.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -38,7 +39,7 @@ class RoomStoreTest : public ::testing::Test {
   static RoomStore::Person Person(const std::string& name, const std::vector<std::string>& groups = {}) {
     return {name, Grantee::Of(name, groups)};
   }
-  RoomStore store_{{.rooms_per_user = 3, .notes = 250, .all_bytes = 2000}, *RoomStore::NewMemory()};
+  RoomStore store_{{.rooms_per_user = 3, .notes = 250, .all_bytes = 2000}, *NewMemoryDatabase()};
 };
 
 TEST_F(RoomStoreTest, NotesComeInOrderOnceAndAfterASequence) {
