@@ -61,6 +61,7 @@ int Run(const DaemonOptions& options) {
   server_options.metrics_address = options.metrics;
   server_options.log = options.log;
   server_options.quotas = options.quotas;
+  server_options.retention = options.retention;
   server_options.webhook_rules = options.webhook_rules;
   server_options.checkpoint_interval =
       std::chrono::milliseconds(static_cast<std::int64_t>(1000 * options.checkpoint_interval));

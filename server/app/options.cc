@@ -56,10 +56,21 @@ std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int p
         const absl::Status set = options.quotas.Set(text);
         if (!set.ok()) throw CLI::ValidationError("--quota", std::string(set.message()));
       });
+  std::vector<std::string> keep;
+  app.add_option("--keep", keep,
+                 "how long ended jobs of a class (interactive, graded, regrade) are kept, as interactive=7d or "
+                 "graded=none (for ever); may repeat; default: interactive=30d, the others for ever")
+      ->type_name("CLASS=DURATION")
+      ->allow_extra_args(false)
+      ->each([&options](const std::string& text) {
+        const absl::Status set = options.retention.Set(text);
+        if (!set.ok()) throw CLI::ValidationError("--keep", std::string(set.message()));
+      });
   std::vector<std::string> webhook_hosts;
-  app.add_option("--webhook-allow", webhook_hosts,
-                 "a host that may be told of the end of jobs (ports 80 and 443, or the one given); may repeat; default: "
-                 "none. A name must stand for a public address, or for one that is itself allowed so")
+  app.add_option(
+         "--webhook-allow", webhook_hosts,
+         "a host that may be told of the end of jobs (ports 80 and 443, or the one given); may repeat; default: "
+         "none. A name must stand for a public address, or for one that is itself allowed so")
       ->type_name("HOST[:PORT]")
       ->allow_extra_args(false)
       ->each([&options](const std::string& text) {

@@ -8,6 +8,7 @@
 
 #include "server/app/user_commands.h"
 #include "server/quota/quotas.h"
+#include "server/store/retention.h"
 #include "server/webhook/webhook_rules.h"
 
 namespace flatlight {
@@ -28,6 +29,7 @@ struct DaemonOptions {
   std::string metrics;             // HOST:PORT for Prometheus; empty: none.
   std::string log;                 // A file of calls, or "-"; empty: none.
   QuotaTable quotas;               // What each user may have.
+  Retention retention;             // How long ended jobs are kept.
   WebhookRules webhook_rules;      // Who may be told of the end of jobs.
   bool exit_with_parent = false;   // End when standard input does.
 };

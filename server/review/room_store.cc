@@ -314,6 +314,12 @@ absl::StatusOr<bool> RoomStore::Shows(const JobId& job, const Person& to) {
   return rooms.Step();
 }
 
+absl::StatusOr<bool> RoomStore::IsShown(const JobId& job) {
+  const std::lock_guard lock(mutex_);
+  Statement rooms = database_->Prepare("SELECT 1 FROM rooms WHERE job = ? AND close_time IS NULL LIMIT 1");
+  return rooms.Bind(std::string_view(job.Name())).Step();
+}
+
 absl::Status RoomStore::Share(const RoomId& id, const Grant& grant) {
   const std::lock_guard lock(mutex_);
   return Write([&]() -> absl::Status {

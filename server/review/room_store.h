@@ -63,6 +63,9 @@ class RoomStore {
   // Whether an open room, of which `to` is owner or member, looks at the job.
   absl::StatusOr<bool> Shows(const JobId& job, const Person& to);
 
+  // Whether any open room does.
+  absl::StatusOr<bool> IsShown(const JobId& job);
+
   // As of jobs: see JobStore.
   absl::Status Share(const RoomId& id, const Grant& grant);
   absl::Status Unshare(const RoomId& id, const Grantee& grantee);

@@ -187,6 +187,7 @@ void Scheduler::End(JobRun& run, JobPhase phase) {
   run.state.phase = phase;
   run.state.queue.reset();
   run.state.end_time = std::chrono::system_clock::now();
+  run.state.expire_time = options_.retention.ExpireTime(run.spec->job_class, *run.state.end_time);
   std::vector<RunPtr> followers;  // They end too, below.
   if (phase == JobPhase::kSucceeded) followers.swap(run.followers);
   Publish(run);

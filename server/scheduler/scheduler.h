@@ -33,6 +33,7 @@
 #include "server/scheduler/shared_work.h"
 #include "server/scheduler/task_queue.h"
 #include "server/store/job_store.h"
+#include "server/store/retention.h"
 
 namespace flatlight {
 
@@ -51,6 +52,7 @@ struct SchedulerOptions {
       std::chrono::milliseconds(40);  // Longer where a snapshot costs more than a tenth of it.
   // Of one job; longer where they would cost more than a hundredth of its processor time.
   Clock::Duration checkpoint_interval = std::chrono::seconds(3);
+  Retention retention;                // Of jobs that have ended: their states tell when they expire.
   SchedulerEvents* events = nullptr;  // Who is told of the work; outlives the scheduler.
   CpuLedger* ledger = nullptr;        // Of what owners have had today; outlives the scheduler. Null: nobody counts.
   Clock::Duration day_interval = std::chrono::seconds(1);  // Between looks whether another day has begun.

@@ -57,6 +57,8 @@ std::shared_ptr<const JobState> Scheduler::StateOfDone(const JobSpec& spec) {
     const std::lock_guard lock(mutex_);
     done = shared_work_.Done(spec.work_key);
   }
+  // What this process does not remember, the store may.
+  if (!done && !spec.work_key.empty()) done = store_.FindDone(spec.work_key);
   if (!done) return nullptr;
   const auto job = store_.GetWhole(*done);
   if (!job.ok() || job->state->phase != JobPhase::kSucceeded || job->state->field == nullptr) return nullptr;

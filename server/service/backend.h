@@ -19,6 +19,7 @@
 #include "server/service/scene_cache.h"
 #include "server/service/watch_hub.h"
 #include "server/store/job_store.h"
+#include "server/store/retention.h"
 #include "server/store/scene_store.h"
 #include "server/store/webhook_outbox.h"
 #include "server/webhook/webhook_rules.h"
@@ -43,6 +44,7 @@ struct Backend {
   TaskQueue& quick;
   TaskQueue& slow;
   CallTelemetry& telemetry;
+  const Retention retention;
   const WebhookRules& webhook_rules;
   WebhookOutbox& webhooks;
   const std::string webhook_key;  // See WebhookOutbox.

@@ -54,6 +54,8 @@ v1::QueuePlace::Reason ReasonToProto(QueuePlace::Reason reason) {
   return v1::QueuePlace::REASON_UNSPECIFIED;
 }
 
+}  // namespace
+
 v1::JobClass JobClassToProto(JobClass job_class) {
   switch (job_class) {
     case JobClass::kInteractive:
@@ -65,8 +67,6 @@ v1::JobClass JobClassToProto(JobClass job_class) {
   }
   return v1::JOB_CLASS_UNSPECIFIED;
 }
-
-}  // namespace
 
 void SetTime(WallTime time, google::protobuf::Timestamp& out) {
   using std::chrono::duration_cast;
@@ -114,6 +114,7 @@ v1::Job JobToProto(const JobSpec& spec, const JobState& state, JobView view) {
   SetTime(spec.create_time, *job.mutable_create_time());
   if (state.start_time) SetTime(*state.start_time, *job.mutable_start_time());
   if (state.end_time) SetTime(*state.end_time, *job.mutable_end_time());
+  if (state.expire_time) SetTime(*state.expire_time, *job.mutable_expire_time());
   if (state.end_reason) job.set_end_reason(EndReasonToProto(*state.end_reason));
   if (!state.error.ok()) *job.mutable_error() = ToRpcStatus(state.error);
   return job;

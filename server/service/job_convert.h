@@ -34,6 +34,8 @@ absl::StatusOr<JobId> ParseJobName(const std::string& name);
 // INTERACTIVE if it is not said; INVALID_ARGUMENT of a class that is unknown.
 absl::StatusOr<JobClass> JobClassFromProto(v1::JobClass job_class);
 
+v1::JobClass JobClassToProto(JobClass job_class);
+
 void SetTime(WallTime time, google::protobuf::Timestamp& out);
 
 }  // namespace flatlight

@@ -87,7 +87,10 @@ absl::StatusOr<JobRecord> ProtoJobFormat::Read(const ArchivedJob& archived, cons
   state->elapsed_seconds = job.progress().elapsed_seconds();
   state->cpu_seconds = result.statistics().cpu_seconds();
   if (job.has_start_time()) state->start_time = TimeOf(job.start_time());
-  if (job.has_end_time()) state->end_time = TimeOf(job.end_time());
+  if (job.has_end_time()) {
+    state->end_time = TimeOf(job.end_time());
+    state->expire_time = retention_.ExpireTime(spec->job_class, *state->end_time);
+  }
   state->end_reason = EndReasonFromProto(job.end_reason());
   if (job.has_error()) state->error = FromRpcStatus(job.error());
   if (result_bytes != nullptr) {

@@ -6,13 +6,14 @@
 #include <utility>
 
 #include "server/store/durable_job_store.h"
+#include "server/store/retention.h"
 
 namespace flatlight {
 
 // Jobs are written as what callers see of them: Job and RenderResult, serialised.
 class ProtoJobFormat final : public JobFormat {
  public:
-  explicit ProtoJobFormat(std::string build) : build_(std::move(build)) {}
+  ProtoJobFormat(std::string build, const Retention& retention) : build_(std::move(build)), retention_(retention) {}
 
   std::string WriteMessage(const JobRecord& job) const override;
   std::optional<std::string> WriteResult(const JobRecord& job) const override;
@@ -21,6 +22,7 @@ class ProtoJobFormat final : public JobFormat {
 
  private:
   const std::string build_;
+  const Retention retention_;  // As of now: when a job expires is not what was written, but follows from its end.
 };
 
 }  // namespace flatlight

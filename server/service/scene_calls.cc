@@ -228,6 +228,13 @@ v1::GetCapabilitiesResponse GetCapabilities(Backend& backend, const Caller& call
   response.set_processor(ProcessorModel());
   response.set_processors(UsableProcessors());
   *response.mutable_quotas() = QuotasToProto(backend, caller);
+  for (std::size_t i = 0; i < kJobClasses; ++i) {
+    v1::Retention& retention = *response.add_retention();
+    const auto job_class = static_cast<JobClass>(i);
+    retention.set_job_class(JobClassToProto(job_class));
+    if (const auto kept = backend.retention.Of(job_class))
+      retention.set_keep_seconds(static_cast<double>(kept->count()));
+  }
   for (const std::string& host : backend.webhook_rules.hosts()) response.add_webhook_hosts(host);
   return response;
 }

@@ -33,9 +33,10 @@ class SceneService final : public RawSceneService {
   Backend& backend_;
 };
 
-class ServerService final : public v1::ServerService::WithRawCallbackMethod_GetCapabilities<
-                                v1::ServerService::WithRawCallbackMethod_GetActivity<
-                                    v1::ServerService::WithRawCallbackMethod_GetWebhookSecret<v1::ServerService::Service>>> {
+class ServerService final
+    : public v1::ServerService::WithRawCallbackMethod_GetCapabilities<
+          v1::ServerService::WithRawCallbackMethod_GetActivity<
+              v1::ServerService::WithRawCallbackMethod_GetWebhookSecret<v1::ServerService::Service>>> {
  public:
   explicit ServerService(Backend& backend) : backend_(backend) {}
 

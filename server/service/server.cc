@@ -22,6 +22,7 @@
 #include "server/service/call_telemetry.h"
 #include "server/service/connection_limits.h"
 #include "server/service/job_format.h"
+#include "server/service/job_sweeper.h"
 #include "server/service/listen_address.h"
 #include "server/service/render_calls.h"
 #include "server/service/render_service.h"
@@ -70,6 +71,7 @@ SchedulerOptions MakeSchedulerOptions(const ServerOptions& options, Metrics& met
   scheduler.starters = 2;
   scheduler.max_running_jobs = options.limits.max_running_jobs;
   scheduler.ledger = &ledger;
+  scheduler.retention = options.retention;
   scheduler.checkpoint_interval = options.checkpoint_interval;
   return scheduler;
 }
@@ -117,7 +119,7 @@ struct Server::Parts {
         quotas(options.quotas),
         ledger(storage.get(), {.interval = options.checkpoint_interval, .now = options.day_clock}),
         archive(storage == nullptr ? nullptr : std::make_unique<JobArchive>(*storage, BuildVersion())),
-        format(BuildVersion()),
+        format(BuildVersion(), options.retention),
         job_store(MakeJobStore(options)),
         jobs(*job_store),
         scene_store(MakeSceneStore(options)),
@@ -148,13 +150,21 @@ struct Server::Parts {
                 .quick = quick,
                 .slow = slow,
                 .telemetry = telemetry,
+                .retention = options.retention,
                 .webhook_rules = webhook_rules,
                 .webhooks = *webhooks,
                 .webhook_key = webhook_key},
         render_service(backend, hub),
         scene_service(backend),
         server_service(backend),
-        review_service(backend, hub) {
+        review_service(backend, hub),
+        sweeper(
+            {.retention = options.retention, .interval = options.retention_interval, .now = options.retention_clock},
+            jobs,
+            {.is_needed =
+                 [this](const JobId& job) { return hub.IsWatched(job.Name()) || rooms.IsShown(job).value_or(true); },
+             .remove = [this](const JobId& job) { return scheduler.Delete(job); },
+             .removed = [this](const JobSpec& job) { NoteExpired(job); }}) {
     metrics.ReadWith([this] { return Read(); });
   }
 
@@ -189,6 +199,16 @@ struct Server::Parts {
     if (!attempt.error.empty()) line["error"] = attempt.error;
     if (logs.calls != nullptr) logs.calls->Write(line);
     if (logs.audit != nullptr && attempt.outcome != WebhookAttempt::Outcome::kFailed) logs.audit->Write(line);
+  }
+
+  void NoteExpired(const JobSpec& job) {
+    metrics.JobExpired();
+    if (logs.audit == nullptr) return;
+    JsonLog::Line line;
+    line["removed"] = "expired";
+    line["caller"] = job.owner;
+    line["resource"] = job.id.Name();
+    logs.audit->Write(line);
   }
 
   std::unique_ptr<JobStore> MakeJobStore(const ServerOptions& options) {
@@ -295,6 +315,7 @@ struct Server::Parts {
   SceneService scene_service;
   ServerService server_service;
   ReviewService review_service;
+  JobSweeper sweeper;
   std::unique_ptr<TlsCredentials> tls;  // Null: without TLS.
   std::mutex health_mutex;              // Held while `grpc` changes.
   bool storage_healthy = true;
@@ -407,6 +428,7 @@ void Server::Drain(std::chrono::milliseconds grace) {
   if (parts.grpc == nullptr) return;
   parts.backend.draining = true;
   parts.grpc->GetHealthCheckService()->Shutdown();
+  parts.sweeper.Close();
   parts.hub.Drain(grace);
   parts.scheduler.Stop();
   parts.ledger.Close();

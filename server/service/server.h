@@ -14,6 +14,7 @@
 #include "server/scheduler/scheduler.h"
 #include "server/service/limits.h"
 #include "server/service/tls_files.h"
+#include "server/store/retention.h"
 #include "server/webhook/webhook_rules.h"
 #include "server/webhook/webhook_sender.h"
 
@@ -29,6 +30,7 @@ struct ServerOptions {
   std::string data;   // A folder for what is to outlive the process; empty: nothing does.
   Limits limits;
   QuotaTable quotas;
+  Retention retention;         // Of jobs that have ended.
   WebhookRules webhook_rules;  // Who may be told of the end of jobs: nobody.
   WebhookSender::Options webhooks;
   std::string metrics_address;  // A loopback address and port for Prometheus; empty: none is served.
@@ -40,6 +42,8 @@ struct ServerOptions {
   // Tests give their own: of quotas for requests (null: that of the machine), and of the day of UTC.
   const Clock* request_clock = nullptr;
   std::function<std::chrono::system_clock::time_point()> day_clock = std::chrono::system_clock::now;
+  std::function<std::chrono::system_clock::time_point()> retention_clock = std::chrono::system_clock::now;
+  std::chrono::milliseconds retention_interval{0};  // Between looks for jobs that have expired; 0: see JobSweeper.
   // Tests give their own; else StartRendering, on indexes that jobs share (JobSpec::sharers).
   std::function<std::unique_ptr<Rendering>(std::shared_ptr<const Scene>, const Plan&)> start_rendering;
 };

@@ -87,6 +87,12 @@ std::size_t WatchHub::size() const {
   return count_;
 }
 
+bool WatchHub::IsWatched(const std::string& subject) const {
+  const std::lock_guard lock(mutex_);
+  const auto watched = watched_.find(subject);
+  return watched != watched_.end() && !watched->second.watches.empty();
+}
+
 std::size_t WatchHub::SizeOf(const std::string& watcher) const {
   const std::lock_guard lock(mutex_);
   const auto own = count_of_.find(watcher);

@@ -75,6 +75,7 @@ class WatchHub {
   // Watches that are open.
   std::size_t size() const;
   std::size_t SizeOf(const std::string& watcher) const;
+  bool IsWatched(const std::string& subject) const;
   Counts& counts() { return counts_; }
   std::shared_ptr<WatchUpdate> UpdateFor(const JobRecord& job, WatchUpdate::Known known);
   void StepSoon(const std::shared_ptr<Watch>& watch);

@@ -24,9 +24,7 @@ std::string Rfc3339(WallTime time) {
 }
 
 const char* TypeOf(JobPhase phase) {
-  return phase == JobPhase::kSucceeded ? "job.succeeded"
-         : phase == JobPhase::kFailed  ? "job.failed"
-                                       : "job.cancelled";
+  return phase == JobPhase::kSucceeded ? "job.succeeded" : phase == JobPhase::kFailed ? "job.failed" : "job.cancelled";
 }
 
 v1::Webhook::State StateOf(const WebhookState& state) {
@@ -41,18 +39,17 @@ absl::Status CheckWebhook(Backend& backend, const Caller& caller, const std::str
   const auto own = backend.webhooks.OpenOf(caller.name);
   if (!own.ok()) return own.status();
   if (*own >= kMaxOpenOfOne) {
-    return MakeQuotaError("TOO_MANY_OWN_WEBHOOKS", "max_webhooks_per_user",
-                          std::to_string(*own) + " of your webhooks have not been delivered; allowed: " +
-                              std::to_string(kMaxOpenOfOne),
-                          kTryAgain, QuotaUse{static_cast<double>(*own), static_cast<double>(kMaxOpenOfOne)});
+    return MakeQuotaError(
+        "TOO_MANY_OWN_WEBHOOKS", "max_webhooks_per_user",
+        std::to_string(*own) + " of your webhooks have not been delivered; allowed: " + std::to_string(kMaxOpenOfOne),
+        kTryAgain, QuotaUse{static_cast<double>(*own), static_cast<double>(kMaxOpenOfOne)});
   }
   const auto all = backend.webhooks.OpenOf(std::nullopt);
   if (!all.ok()) return all.status();
   if (*all < kMaxOpen) return absl::OkStatus();
-  return MakeQuotaError("TOO_MANY_WEBHOOKS", "max_webhooks",
-                        std::to_string(*all) + " webhooks have not been delivered; allowed: " +
-                            std::to_string(kMaxOpen),
-                        kTryAgain);
+  return MakeQuotaError(
+      "TOO_MANY_WEBHOOKS", "max_webhooks",
+      std::to_string(*all) + " webhooks have not been delivered; allowed: " + std::to_string(kMaxOpen), kTryAgain);
 }
 
 v1::GetWebhookSecretResponse GetWebhookSecret(const Backend& backend, const Caller& caller) {

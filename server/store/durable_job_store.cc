@@ -7,7 +7,7 @@
 namespace flatlight {
 namespace {
 
-constexpr std::chrono::hours kBetweenClearings{1};
+constexpr std::size_t kMostClassifiedAtOnce = 1000;
 
 WallTime Now() { return std::chrono::system_clock::now(); }
 
@@ -156,6 +156,24 @@ absl::Status DurableJobStore::Delete(const JobId& id) {
   return absl::OkStatus();
 }
 
+absl::StatusOr<std::vector<JobId>> DurableJobStore::EndedBefore(JobClass job_class, WallTime before, std::size_t skip,
+                                                                std::size_t limit) {
+  if (absl::Status classified = ClassifySome(); !classified.ok()) return classified;
+  return archive_.EndedBefore(job_class, before, skip, limit);
+}
+
+absl::Status DurableJobStore::ClassifySome() {
+  const auto jobs = archive_.WithoutClass(kMostClassifiedAtOnce);
+  if (!jobs.ok()) return jobs.status();
+  std::vector<std::pair<JobId, JobClass>> classes;
+  for (const ArchivedJob& job : *jobs) {
+    const auto record = format_.Read(job, nullptr);
+    // What cannot be read is kept: it may be graded.
+    classes.emplace_back(job.id, record.ok() ? record->spec->job_class : JobClass::kGraded);
+  }
+  return archive_.Classify(classes);
+}
+
 absl::Status DurableJobStore::Share(const JobId& id, const Grant& grant) {
   absl::Status written = archive_.Share(id, grant);
   if (!absl::IsNotFound(written) && !absl::IsResourceExhausted(written)) NoteHealth(written);
@@ -206,8 +224,7 @@ void DurableJobStore::NoteHealth(const absl::Status& written) {
 void DurableJobStore::Work() {
   using SteadyTime = std::chrono::steady_clock::time_point;
   std::unique_lock lock(mutex_);
-  SteadyTime retry;     // Ends before it are not tried again.
-  SteadyTime clearing;  // The next time to forget what is old.
+  SteadyTime retry;  // Ends before it are not tried again.
   while (true) {
     const SteadyTime now = std::chrono::steady_clock::now();
     if (!ends_.empty() && (now >= retry || !unwritten_.at(ends_.front()).shown || stopping_)) {
@@ -222,13 +239,10 @@ void DurableJobStore::Work() {
       WriteCheckpoint(lock);
     } else if (stopping_) {
       return;
-    } else if (now >= clearing) {
-      clearing = now + kBetweenClearings;
-      lock.unlock();
-      archive_.DropEnded(Now() - options_.keep).IgnoreError();
-      lock.lock();
+    } else if (ends_.empty()) {
+      wake_.wait(lock);
     } else {
-      wake_.wait_until(lock, ends_.empty() ? clearing : std::min(clearing, retry));
+      wake_.wait_until(lock, retry);
     }
   }
 }
@@ -237,9 +251,14 @@ bool DurableJobStore::WriteEnd(std::unique_lock<std::mutex>& lock, const JobId& 
   const JobRecord job = unwritten_.at(id).job;
   const bool shown = unwritten_.at(id).shown;
   lock.unlock();
-  const std::string event = job.spec->webhook.empty() ? "" : format_.WriteEvent(job);
   const absl::Status written =
-      archive_.End(id, format_.WriteMessage(job), job.state->sequence, format_.WriteResult(job), Now(), event);
+      archive_.End(id, {.message = format_.WriteMessage(job),
+                        .sequence = job.state->sequence,
+                        .result = format_.WriteResult(job),
+                        .time = job.state->end_time.value_or(Now()),
+                        .job_class = job.spec->job_class,
+                        .event = job.spec->webhook.empty() ? "" : format_.WriteEvent(job),
+                        .work_key = job.state->phase == JobPhase::kSucceeded ? job.spec->work_key : ""});
   const bool deleted = absl::IsNotFound(written);
   if (!shown && !deleted) memory_.Update(job).IgnoreError();
   lock.lock();

@@ -27,7 +27,6 @@ class DurableJobStore final : public JobStore {
  public:
   struct Options {
     MemoryJobStore::Limits memory;
-    std::chrono::hours keep{24 * 30};  // Jobs that have ended.
     std::chrono::milliseconds retry{2000};
   };
   // What is passed in must outlive the store. With no lock held, `ended` is told of jobs whose end is shown from now
@@ -58,11 +57,16 @@ class DurableJobStore final : public JobStore {
   absl::StatusOr<JobPage> ListShared(const std::vector<Grantee>& who, const std::string& owner,
                                      std::optional<std::uint64_t> before, std::size_t limit) override;
   absl::Status Delete(const JobId& id) override;
+  absl::StatusOr<std::vector<JobId>> EndedBefore(JobClass job_class, WallTime before, std::size_t skip,
+                                                 std::size_t limit) override;
   absl::Status Share(const JobId& id, const Grant& grant) override;
   absl::Status Unshare(const JobId& id, const Grantee& grantee) override;
   absl::StatusOr<std::vector<Grant>> GrantsOf(const JobId& id) override;
   std::uint64_t StoredBytesOf(const std::string& owner) override { return archive_.StoredBytesOf(owner); }
   bool durable() const override { return true; }
+  std::optional<JobId> FindDone(const std::string& work_key) override {
+    return archive_.FindDone(work_key).value_or(std::nullopt);
+  }
   absl::StatusOr<JobRecord> AwaitEnd(const JobId& id) override;
   absl::StatusOr<std::shared_ptr<const std::string>> WrittenResult(const JobId& id) override;
   absl::Status SavePause(const JobId& id) override;
@@ -85,6 +89,8 @@ class DurableJobStore final : public JobStore {
   void NoteHealth(const absl::Status& written);
   void WriteCheckpoint(std::unique_lock<std::mutex>& lock) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   absl::StatusOr<JobPage> PageOf(absl::StatusOr<JobArchive::Page> archived);
+  // Of jobs that an earlier Flatlight wrote without their class.
+  absl::Status ClassifySome();
   // From the archive.
   absl::StatusOr<JobRecord> Read(const JobId& id, bool whole);
   absl::StatusOr<JobRecord> Find(const JobId& id, bool whole);

@@ -87,6 +87,7 @@ struct JobState {
   double cpu_seconds = 0;      // Processor time of all threads that worked for the job.
   std::optional<WallTime> start_time;
   std::optional<WallTime> end_time;
+  std::optional<WallTime> expire_time;  // Of a job that has ended, and is not kept for ever (Retention).
   std::optional<QueuePlace> queue;      // Of a job that is queued.
   std::optional<EndReason> end_reason;  // Of a job that succeeded.
   absl::Status error;                   // Of a job that failed.

@@ -30,23 +30,6 @@ ArchivedJob JobOf(const Statement& row) {
   return job;
 }
 
-// What a job holds of blobs, given back; `removed` gets what its owner has less.
-absl::Status ReleaseBlobs(Writing& writing, const std::string& condition, std::int64_t parameter,
-                          StoredBytes& removed) {
-  Statement blobs =
-      writing.Prepare("SELECT request, scene, result, checkpoint, owner, stored_bytes FROM jobs WHERE " + condition);
-  blobs.Bind(parameter);
-  while (true) {
-    const auto row = blobs.Step();
-    if (!row.ok()) return row.status();
-    if (!*row) return absl::OkStatus();
-    removed[blobs.Bytes(4)] += blobs.Integer(5);
-    for (int column = 0; column < 4; ++column) {
-      if (absl::Status less = writing.Release(blobs.OptionalBytes(column)); !less.ok()) return less;
-    }
-  }
-}
-
 // The number of a job; NOT_FOUND if there is none.
 absl::StatusOr<std::int64_t> NumberOf(Database& database, const JobId& id) {
   Statement number = database.Prepare("SELECT number FROM jobs WHERE uuid = ?");
@@ -180,11 +163,10 @@ absl::Status JobArchive::SavePause(const JobId& id, bool paused) {
   });
 }
 
-absl::Status JobArchive::End(const JobId& id, std::string message, std::uint64_t sequence,
-                             std::optional<std::string> result, WallTime now, const std::string& event) {
+absl::Status JobArchive::End(const JobId& id, JobEnd end) {
   std::optional<Blob> blob;
-  if (result) {
-    auto prepared = storage_.Prepare(*std::move(result));
+  if (end.result) {
+    auto prepared = storage_.Prepare(*std::move(end.result));
     if (!prepared.ok()) return prepared.status();
     blob = *std::move(prepared);
   }
@@ -204,21 +186,23 @@ absl::Status JobArchive::End(const JobId& id, std::string message, std::uint64_t
     for (int column = 0; column < 3; ++column) {
       if (absl::Status less = writing.Release(old.OptionalBytes(column)); !less.ok()) return less;
     }
-    if (!event.empty()) {
-      const auto due = MakeWebhookDue(writing.database(), id, event);
+    if (!end.event.empty()) {
+      const auto due = MakeWebhookDue(writing.database(), id, end.event);
       if (!due.ok()) return due.status();
       webhook_is_due = *due;
     }
     return writing
         .Prepare(
             "UPDATE jobs SET message = ?, sequence = ?, end_time = ?, result = ?, checkpoint = NULL, scene = NULL, "
-            "build = ?, stored_bytes = stored_bytes + ? WHERE number = ?")
-        .BindBlob(message)
-        .Bind(static_cast<std::int64_t>(sequence))
-        .Bind(SecondsOf(now))
+            "build = ?, stored_bytes = stored_bytes + ?, job_class = ?, work_key = ? WHERE number = ?")
+        .BindBlob(end.message)
+        .Bind(static_cast<std::int64_t>(end.sequence))
+        .Bind(SecondsOf(end.time))
         .Bind(blob ? std::optional(blob->sha256) : std::nullopt)
         .Bind(std::string_view(build_))
         .Bind(stored_bytes)
+        .Bind(static_cast<std::int64_t>(end.job_class))
+        .Bind(end.work_key.empty() ? std::nullopt : std::optional(end.work_key))
         .Bind(*number)
         .Run();
   });
@@ -228,25 +212,85 @@ absl::Status JobArchive::End(const JobId& id, std::string message, std::uint64_t
 }
 
 absl::Status JobArchive::Delete(const JobId& id) {
-  return RemoveIf("number = ?", [&](Writing& writing) { return NumberOf(writing.database(), id); });
-}
-
-absl::Status JobArchive::DropEnded(WallTime before) {
-  return RemoveIf("end_time < ?", [&](Writing&) -> absl::StatusOr<std::int64_t> { return SecondsOf(before); });
-}
-
-template <class Parameter>
-absl::Status JobArchive::RemoveIf(const std::string& condition, const Parameter& parameter) {
-  StoredBytes removed;
+  std::string owner;
+  std::int64_t stored_bytes = 0;
   absl::Status written = storage_.Write([&](Writing& writing) -> absl::Status {
-    const auto value = parameter(writing);
-    if (!value.ok()) return value.status();
-    if (absl::Status less = ReleaseBlobs(writing, condition, *value, removed); !less.ok()) return less;
-    return writing.Prepare("DELETE FROM jobs WHERE " + condition).Bind(*value).Run();
+    const auto number = NumberOf(writing.database(), id);
+    if (!number.ok()) return number.status();
+    Statement job =
+        writing.Prepare("SELECT request, scene, result, checkpoint, owner, stored_bytes FROM jobs WHERE number = ?");
+    if (const auto row = job.Bind(*number).Step(); !row.ok()) return row.status();
+    owner = job.Bytes(4);
+    stored_bytes = job.Integer(5);
+    for (int column = 0; column < 4; ++column) {
+      if (absl::Status less = writing.Release(job.OptionalBytes(column)); !less.ok()) return less;
+    }
+    return writing.Prepare("DELETE FROM jobs WHERE number = ?").Bind(*number).Run();
   });
-  if (!written.ok()) return written;
-  for (const auto& [owner, bytes] : removed) AddStoredBytes(owner, -bytes);
+  if (written.ok()) AddStoredBytes(owner, -stored_bytes);
   return written;
+}
+
+absl::StatusOr<std::vector<JobId>> JobArchive::EndedBefore(JobClass job_class, WallTime before, std::size_t skip,
+                                                           std::size_t limit) {
+  std::vector<JobId> ids;
+  absl::Status read = storage_.Read([&](Database& database) -> absl::Status {
+    Statement jobs = database.Prepare(
+        "SELECT uuid FROM jobs WHERE job_class = ? AND end_time < ? ORDER BY end_time, number LIMIT ? OFFSET ?");
+    jobs.Bind(static_cast<std::int64_t>(job_class)).Bind(SecondsOf(before));
+    jobs.Bind(static_cast<std::int64_t>(limit)).Bind(static_cast<std::int64_t>(skip));
+    while (true) {
+      const auto row = jobs.Step();
+      if (!row.ok()) return row.status();
+      if (!*row) return absl::OkStatus();
+      if (const auto id = JobId::FromName("jobs/" + jobs.Bytes(0))) ids.push_back(*id);
+    }
+  });
+  if (!read.ok()) return read;
+  return ids;
+}
+
+absl::StatusOr<std::optional<JobId>> JobArchive::FindDone(const std::string& work_key) {
+  std::optional<JobId> done;
+  absl::Status read = storage_.Read([&](Database& database) -> absl::Status {
+    Statement job = database.Prepare("SELECT uuid FROM jobs WHERE work_key = ? ORDER BY number DESC LIMIT 1");
+    const auto row = job.Bind(std::string_view(work_key)).Step();
+    if (row.ok() && *row) done = JobId::FromName("jobs/" + job.Bytes(0));
+    return row.status();
+  });
+  if (!read.ok()) return read;
+  return done;
+}
+
+absl::StatusOr<std::vector<ArchivedJob>> JobArchive::WithoutClass(std::size_t limit) {
+  std::vector<ArchivedJob> found;
+  absl::Status read = storage_.Read([&](Database& database) -> absl::Status {
+    Statement jobs =
+        database.Prepare(std::string(kColumns) + "WHERE job_class IS NULL AND end_time IS NOT NULL LIMIT ?");
+    jobs.Bind(static_cast<std::int64_t>(limit));
+    while (true) {
+      const auto row = jobs.Step();
+      if (!row.ok()) return row.status();
+      if (!*row) return absl::OkStatus();
+      found.push_back(JobOf(jobs));
+    }
+  });
+  if (!read.ok()) return read;
+  return found;
+}
+
+absl::Status JobArchive::Classify(const std::vector<std::pair<JobId, JobClass>>& classes) {
+  if (classes.empty()) return absl::OkStatus();
+  return storage_.Write([&](Writing& writing) -> absl::Status {
+    for (const auto& [id, job_class] : classes) {
+      absl::Status written = writing.Prepare("UPDATE jobs SET job_class = ? WHERE uuid = ?")
+                                 .Bind(static_cast<std::int64_t>(job_class))
+                                 .Bind(std::string_view(id.uuid()))
+                                 .Run();
+      if (!written.ok()) return written;
+    }
+    return absl::OkStatus();
+  });
 }
 
 std::uint64_t JobArchive::StoredBytesOf(const std::string& owner) {

@@ -34,6 +34,17 @@ struct ArchivedJob {
   bool ended() const { return sequence > 0; }
 };
 
+// What a job comes to.
+struct JobEnd {
+  std::string message;
+  std::uint64_t sequence = 1;              // Of that state, > 0.
+  std::optional<std::string> result = {};  // Its bytes.
+  WallTime time = {};
+  JobClass job_class = JobClass::kInteractive;
+  std::string event = {};     // For its webhook, if it has one.
+  std::string work_key = {};  // JobSpec's, if its values are all that such work comes to.
+};
+
 // Jobs on disk. Each change is committed when the call returns, and has not happened if it returns an error. Safe to
 // use from any thread.
 class JobArchive {
@@ -50,18 +61,23 @@ class JobArchive {
   absl::Status SaveCheckpoint(const JobId& id, std::string checkpoint);
   // Whether a job that has not ended is paused. Nothing happens to one that has ended, or is gone.
   absl::Status SavePause(const JobId& id, bool paused);
-  // The last change of a job: nothing remains but message and result. `sequence` > 0. `event` is sent to its webhook, if
-  // it has one.
-  absl::Status End(const JobId& id, std::string message, std::uint64_t sequence, std::optional<std::string> result,
-                   WallTime now, const std::string& event = "");
+  // The last change of a job: nothing remains but message and result.
+  absl::Status End(const JobId& id, JobEnd end);
   // `due` is called after each end that a webhook is to be told of. To be called once, first.
   void WhenWebhookIsDue(std::function<void()> due) { webhook_due_ = std::move(due); }
   absl::Status Delete(const JobId& id);
   absl::Status Share(const JobId& id, const Grant& grant);
   absl::Status Unshare(const JobId& id, const Grantee& grantee);
   absl::StatusOr<std::vector<Grant>> GrantsOf(const JobId& id);
-  // Forgets jobs that ended before, and requests made before.
-  absl::Status DropEnded(WallTime before);
+  // As JobStore's. Jobs without a class are not among them.
+  absl::StatusOr<std::vector<JobId>> EndedBefore(JobClass job_class, WallTime before, std::size_t skip,
+                                                 std::size_t limit);
+  // The job that did the work of a key last; nothing if there is none.
+  absl::StatusOr<std::optional<JobId>> FindDone(const std::string& work_key);
+  // Jobs that ended under a Flatlight that wrote no classes, at most so many; and writes what they are.
+  absl::StatusOr<std::vector<ArchivedJob>> WithoutClass(std::size_t limit);
+  absl::Status Classify(const std::vector<std::pair<JobId, JobClass>>& classes);
+  // Forgets requests made before.
   absl::Status DropRequests(WallTime before);
 
   // NOT_FOUND if there is none.
@@ -89,10 +105,6 @@ class JobArchive {
   static constexpr std::size_t kMostGranted = 10'000;
 
   void AddStoredBytes(const std::string& owner, std::int64_t bytes);
-  // Removes the jobs that meet an SQL condition on what parameter(writing) returns.
-  template <class Parameter>
-  absl::Status RemoveIf(const std::string& condition, const Parameter& parameter);
-
   Storage& storage_;
   const std::string build_;
   std::function<void()> webhook_due_ = [] {};

@@ -70,12 +70,20 @@ class JobStore {
   virtual absl::StatusOr<JobPage> ListShared(const std::vector<Grantee>& who, const std::string& owner,
                                              std::optional<std::uint64_t> before, std::size_t limit) = 0;
   virtual absl::Status Delete(const JobId& id) = 0;
+  // Jobs of a class that ended before, those that ended first of all, without the first `skip` of these; at most
+  // `limit`.
+  virtual absl::StatusOr<std::vector<JobId>> EndedBefore(JobClass job_class, WallTime before, std::size_t skip,
+                                                         std::size_t limit) = 0;
 
   // Who besides its owner may use a job. NOT_FOUND if there is no such job; else as AddGrant and RemoveGrant.
   virtual absl::Status Share(const JobId& id, const Grant& grant) = 0;
   virtual absl::Status Unshare(const JobId& id, const Grantee& grantee) = 0;
   // None, of a job that is not there.
   virtual absl::StatusOr<std::vector<Grant>> GrantsOf(const JobId& id) = 0;
+
+  // The job that did the work of a key (JobSpec::work_key) last, and succeeded, also in a process before; nothing if
+  // none is known.
+  virtual std::optional<JobId> FindDone(const std::string& /*work_key*/) { return std::nullopt; }
 
   // How much room requests and results of an owner's jobs take; 0 where they end with the process.
   virtual std::uint64_t StoredBytesOf(const std::string& /*owner*/) { return 0; }

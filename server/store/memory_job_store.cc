@@ -231,4 +231,21 @@ absl::Status MemoryJobStore::Delete(const JobId& id) {
   return absl::OkStatus();
 }
 
+absl::StatusOr<std::vector<JobId>> MemoryJobStore::EndedBefore(JobClass job_class, WallTime before, std::size_t skip,
+                                                               std::size_t limit) {
+  const std::lock_guard lock(mutex_);
+  std::vector<JobId> ids;
+  for (const auto& [end, number] : ended_) {
+    const JobRecord& job = jobs_.at(number).job;
+    if (job.spec->job_class != job_class || !job.state->end_time || *job.state->end_time >= before) continue;
+    if (skip > 0) {
+      --skip;
+      continue;
+    }
+    if (ids.size() == limit) break;
+    ids.push_back(job.spec->id);
+  }
+  return ids;
+}
+
 }  // namespace flatlight

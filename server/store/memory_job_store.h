@@ -50,6 +50,8 @@ class MemoryJobStore final : public JobStore {
   absl::StatusOr<JobPage> ListShared(const std::vector<Grantee>& who, const std::string& owner,
                                      std::optional<std::uint64_t> before, std::size_t limit) override;
   absl::Status Delete(const JobId& id) override;
+  absl::StatusOr<std::vector<JobId>> EndedBefore(JobClass job_class, WallTime before, std::size_t skip,
+                                                 std::size_t limit) override;
   absl::Status Share(const JobId& id, const Grant& grant) override;
   absl::Status Unshare(const JobId& id, const Grantee& grantee) override;
   absl::StatusOr<std::vector<Grant>> GrantsOf(const JobId& id) override;

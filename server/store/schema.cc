@@ -177,6 +177,20 @@ CREATE TABLE secrets(
 ) WITHOUT ROWID;
 )sql";
 
+// Of jobs that have ended: JobClass; null: an earlier Flatlight wrote them, and it is not known yet.
+constexpr char kRetention[] = R"sql(
+ALTER TABLE jobs ADD COLUMN job_class INTEGER;
+CREATE INDEX jobs_by_class ON jobs(job_class, end_time);
+DROP INDEX jobs_by_end;
+CREATE INDEX jobs_that_run ON jobs(number) WHERE end_time IS NULL;
+)sql";
+
+// By JobSpec::work_key: of a job that succeeded, and whose values others may have.
+constexpr char kDoneWork[] = R"sql(
+ALTER TABLE jobs ADD COLUMN work_key TEXT;
+CREATE INDEX jobs_by_work ON jobs(work_key, number) WHERE work_key IS NOT NULL;
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -187,9 +201,9 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs,  kScenes,      kUsers,       kPauses, kGrants,
-                                                       kRooms, kSceneOwners, kJobsByOwner, kQuotas, kSceneGrants,
-                                                       kWebhooks};
+  static const std::vector<std::string> kMigrations = {kJobs,     kScenes,      kUsers,       kPauses, kGrants,
+                                                       kRooms,    kSceneOwners, kJobsByOwner, kQuotas, kSceneGrants,
+                                                       kWebhooks, kRetention,   kDoneWork};
   return kMigrations;
 }
 

@@ -81,8 +81,8 @@ absl::StatusOr<std::vector<DueWebhook>> WebhookOutbox::Due(WallTime now, std::si
     if (!*row) return due;
     const auto job = JobId::FromName("jobs/" + rows.Bytes(1));
     if (!job) continue;
-    due.push_back({rows.Integer(0), *job, rows.Bytes(2), rows.Bytes(3), rows.Bytes(4),
-                   static_cast<unsigned>(rows.Integer(5))});
+    due.push_back(
+        {rows.Integer(0), *job, rows.Bytes(2), rows.Bytes(3), rows.Bytes(4), static_cast<unsigned>(rows.Integer(5))});
   }
 }
 

@@ -25,9 +25,8 @@ absl::StatusOr<bool> MakeWebhookDue(Database& database, const JobId& job, const 
 }
 
 absl::Status DetachWebhook(Database& database, const JobId& job) {
-  absl::Status removed = database.Prepare("DELETE FROM webhooks WHERE job = ? AND due IS NULL")
-                             .Bind(std::string_view(job.uuid()))
-                             .Run();
+  absl::Status removed =
+      database.Prepare("DELETE FROM webhooks WHERE job = ? AND due IS NULL").Bind(std::string_view(job.uuid())).Run();
   if (!removed.ok()) return removed;
   return database.Prepare("UPDATE webhooks SET detached = 1 WHERE job = ?").Bind(std::string_view(job.uuid())).Run();
 }

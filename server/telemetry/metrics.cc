@@ -166,6 +166,8 @@ struct Metrics::Parts {
       Histograms("flatlight_call_seconds", "How long calls took, streams to their end.");
   prometheus::Family<prometheus::Counter>& refusals =
       Counters("flatlight_refusals_total", "Calls that were answered by an error, by its reason.");
+  prometheus::Counter& expired =
+      Counters("flatlight_jobs_expired_total", "Jobs that were removed as their time was over.").Add({});
   prometheus::Family<prometheus::Counter>& webhooks =
       Counters("flatlight_webhook_attempts_total", "Attempts to tell of a job's end, by what came of them.");
   prometheus::Family<prometheus::Counter>& sent =
@@ -234,6 +236,8 @@ void Metrics::CallEnded(Method& method, absl::StatusCode code, const std::string
   }
   if (!reason.empty()) parts_->refusals.Add({{"reason", reason}}).Increment();
 }
+
+void Metrics::JobExpired() { parts_->expired.Increment(); }
 
 void Metrics::WebhookTried(const std::string& outcome) { parts_->webhooks.Add({{"outcome", outcome}}).Increment(); }
 

@@ -44,6 +44,8 @@ class Metrics final : public SchedulerEvents {
   Method& MethodOf(const std::string& name);
   // A call has its answer: `reason` of an error's ErrorInfo, empty if there is none.
   void CallEnded(Method& method, absl::StatusCode code, const std::string& reason, double seconds, double sent_bytes);
+  // A job was removed as its time was over.
+  void JobExpired();
   // One attempt to tell of a job's end, by what came of it.
   void WebhookTried(const std::string& outcome);
   // Called at each look until Close.

@@ -62,20 +62,20 @@ struct Network {
 
 // RFC 6890, "globally reachable: false", and multicast.
 bool IsPublic(std::uint32_t v4) {
-  constexpr std::array<Network, 15> kOthers = {{{0x00000000, 8},   // This network.
-                                                {0x0A000000, 8},   // Private.
-                                                {0x64400000, 10},  // Carriers.
-                                                {0x7F000000, 8},   // Loopback.
-                                                {0xA9FE0000, 16},  // Link-local, where clouds tell their secrets.
-                                                {0xAC100000, 12},  // Private.
-                                                {0xC0000000, 24},  // Protocols.
-                                                {0xC0000200, 24},  // Documentation.
-                                                {0xC0586300, 24},  // Relays from IPv6.
-                                                {0xC0A80000, 16},  // Private.
-                                                {0xC6120000, 15},  // Benchmarks.
-                                                {0xC6336400, 24},  // Documentation.
-                                                {0xCB007100, 24},  // Documentation.
-                                                {0xE0000000, 4},   // Multicast.
+  constexpr std::array<Network, 15> kOthers = {{{0x00000000, 8},    // This network.
+                                                {0x0A000000, 8},    // Private.
+                                                {0x64400000, 10},   // Carriers.
+                                                {0x7F000000, 8},    // Loopback.
+                                                {0xA9FE0000, 16},   // Link-local, where clouds tell their secrets.
+                                                {0xAC100000, 12},   // Private.
+                                                {0xC0000000, 24},   // Protocols.
+                                                {0xC0000200, 24},   // Documentation.
+                                                {0xC0586300, 24},   // Relays from IPv6.
+                                                {0xC0A80000, 16},   // Private.
+                                                {0xC6120000, 15},   // Benchmarks.
+                                                {0xC6336400, 24},   // Documentation.
+                                                {0xCB007100, 24},   // Documentation.
+                                                {0xE0000000, 4},    // Multicast.
                                                 {0xF0000000, 4}}};  // Reserved, broadcast.
   return std::none_of(kOthers.begin(), kOthers.end(), [&](const Network& network) {
     return v4 >> (32 - network.bits) == network.prefix >> (32 - network.bits);

@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using Outcome = WebhookAttempt::Outcome;
-using SteadyClock = std::chrono::steady_clock;
+using Steady = std::chrono::steady_clock;
 
 constexpr milliseconds kLongestWait{60'000};  // A clock that was set is noticed after so long.
 constexpr milliseconds kShortestWait{10};
@@ -57,16 +57,16 @@ void WebhookSender::Wake() { curl_multi_wakeup(multi_.get()); }
 
 void WebhookSender::Close(milliseconds grace) {
   if (!thread_.joinable()) return;
-  closing_ = SteadyClock::now().time_since_epoch() + grace;
+  closing_ = Steady::now().time_since_epoch() + grace;
   Wake();
   thread_.join();
 }
 
 void WebhookSender::Work() {
   while (true) {
-    const SteadyClock::duration closing = closing_;
-    const bool is_closing = closing != SteadyClock::duration::max();
-    const SteadyClock::duration now = SteadyClock::now().time_since_epoch();
+    const Steady::duration closing = closing_;
+    const bool is_closing = closing != Steady::duration::max();
+    const Steady::duration now = Steady::now().time_since_epoch();
     if (now < closing) StartDue();
     int running = 0;
     curl_multi_perform(multi_.get(), &running);
@@ -83,9 +83,8 @@ void WebhookSender::Work() {
 }
 
 std::size_t WebhookSender::FlightsOf(const std::string& owner) const {
-  return static_cast<std::size_t>(std::count_if(flights_.begin(), flights_.end(), [&](const auto& flight) {
-    return flight.second.webhook.owner == owner;
-  }));
+  return static_cast<std::size_t>(std::count_if(
+      flights_.begin(), flights_.end(), [&](const auto& flight) { return flight.second.webhook.owner == owner; }));
 }
 
 void WebhookSender::StartDue() {
@@ -97,7 +96,7 @@ void WebhookSender::StartDue() {
     if (flights_.size() >= options_.at_once) return;
     if (flights_.contains(webhook.number) || notes_.contains(webhook.number)) continue;
     // While the server ends, only what is new: the rest is for the next one.
-    if (closing_.load() != SteadyClock::duration::max() && webhook.attempts > 0) continue;
+    if (closing_.load() != Steady::duration::max() && webhook.attempts > 0) continue;
     if (FlightsOf(webhook.owner) < options_.at_once_per_owner) Start(std::move(webhook));
   }
 }
@@ -110,15 +109,13 @@ void WebhookSender::Start(DueWebhook webhook) {
   const std::int64_t number = webhook.number;
   const std::string id = WebhookId(webhook.job.uuid());
   const auto timestamp = std::chrono::duration_cast<std::chrono::seconds>(options_.now().time_since_epoch()).count();
-  const std::string signature =
-      WebhookSignature(WebhookSecret(key_, webhook.owner), id, timestamp, webhook.body);
-  WebhookTransfer::Message message{webhook.url,
-                                   webhook.body,
-                                   {"Content-Type: application/json", "Expect:", "User-Agent: " + user_agent_,
-                                    "webhook-id: " + id, "webhook-timestamp: " + std::to_string(timestamp),
-                                    "webhook-signature: " + signature}};
-  auto transfer =
-      std::make_unique<WebhookTransfer>(rules_, std::move(message), options_.connect_limit, options_.limit);
+  const std::string signature = WebhookSignature(WebhookSecret(key_, webhook.owner), id, timestamp, webhook.body);
+  WebhookTransfer::Message message{
+      webhook.url,
+      webhook.body,
+      {"Content-Type: application/json", "Expect:", "User-Agent: " + user_agent_, "webhook-id: " + id,
+       "webhook-timestamp: " + std::to_string(timestamp), "webhook-signature: " + signature}};
+  auto transfer = std::make_unique<WebhookTransfer>(rules_, std::move(message), options_.connect_limit, options_.limit);
   curl_multi_add_handle(multi_.get(), transfer->handle());
   flights_[number] = {std::move(webhook), std::move(transfer)};
 }

@@ -85,8 +85,8 @@ class WebhookSender {
   const std::string user_agent_;
   const std::function<void(const WebhookAttempt&)> tried_;
   const std::unique_ptr<CURLM, FreeMulti> multi_;
-  std::map<std::int64_t, Flight> flights_;                             // The thread's alone, by number.
-  std::map<std::int64_t, std::function<absl::Status()>> notes_;        // Likewise: what is to be written.
+  std::map<std::int64_t, Flight> flights_;                       // The thread's alone, by number.
+  std::map<std::int64_t, std::function<absl::Status()>> notes_;  // Likewise: what is to be written.
   std::atomic<std::chrono::steady_clock::duration> closing_{std::chrono::steady_clock::duration::max()};  // When.
   std::thread thread_;
 };

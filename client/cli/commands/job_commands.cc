@@ -69,8 +69,9 @@ CommandResult Submit(const CommandLine& line, Interruption& interruption) {
   Connection& connection = (*session)->connection();
   const auto source = ProvideScene(connection, *scene, line.probes);
   if (!source.ok()) return source.status();
-  const auto job = CreateJob(connection, *source, line.settings,
-                             {.job_class = line.job_class, .records = *records, .anew = line.anew, .webhook = line.webhook});
+  const auto job =
+      CreateJob(connection, *source, line.settings,
+                {.job_class = line.job_class, .records = *records, .anew = line.anew, .webhook = line.webhook});
   if (!job.ok())
     return ExplainSceneError(connection, *scene, *source, ExplainRecordsError(line.known_records, job.status()));
   Console console(Console::Answer::kMachine, line.quiet);

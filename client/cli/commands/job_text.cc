@@ -71,6 +71,7 @@ std::string JobText(const v1::Job& job) {
   rows.push_back({"created", TimeUtil::ToString(job.create_time())});
   if (job.has_start_time()) rows.push_back({"started", TimeUtil::ToString(job.start_time())});
   if (job.has_end_time()) rows.push_back({"ended", TimeUtil::ToString(job.end_time())});
+  if (job.has_expire_time()) rows.push_back({"kept until", TimeUtil::ToString(job.expire_time())});
   return FormatTable(rows) + '\n' + PlanText(job.plan());
 }
 

@@ -8,8 +8,8 @@ CommandResult ShowWebhookSecret(const CommandLine& line, Interruption& interrupt
   const auto session = Session::Open(line, Session::WithoutServer::kRefuse, interruption);
   if (!session.ok()) return session.status();
   Connection& connection = (*session)->connection();
-  const auto response = connection.Ask(connection.server(), &v1::ServerService::Stub::GetWebhookSecret,
-                                       v1::GetWebhookSecretRequest());
+  const auto response =
+      connection.Ask(connection.server(), &v1::ServerService::Stub::GetWebhookSecret, v1::GetWebhookSecretRequest());
   if (!response.ok()) return response.status();
   return Answer(response->secret() + '\n');
 }

@@ -257,8 +257,8 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   AddJson(top, raw, "the activity");
   CLI::App& quota = AddCommand(app, "quota", "show what you may have of a server, and what you have", kQuotaHelp);
   AddJson(quota, raw, "the same");
-  CLI::App& secret =
-      AddCommand(app, "webhook-secret", "print with what webhooks of your jobs are signed; keep it secret", kSecretHelp);
+  CLI::App& secret = AddCommand(app, "webhook-secret",
+                                "print with what webhooks of your jobs are signed; keep it secret", kSecretHelp);
   AddServer(secret, raw);
   CLI::App& health = AddCommand(app, "health", "ask a server whether it serves; needs no token", kHealthHelp);
   AddQuiet(health, raw);

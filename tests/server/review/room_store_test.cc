@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/review/room_store.h"
-#include "server/store/schema.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "server/store/error.h"
+#include "server/store/schema.h"
 #include "tests/support/status/status_matchers.h"
 
 namespace flatlight {

@@ -126,10 +126,10 @@ TEST(JobArchiveWebhooks, AnEndAndItsWebhookAreOneChange) {
   Submission submission{"request", "", nullptr};
   submission.webhook = "https://example.org/";
   ASSERT_THAT(archive.Insert(job, "ada", "message", submission, std::nullopt, kNow), IsOk());
-  ASSERT_THAT(archive.End(JobId::Random(), "ended", 5, "result", kNow, "event"),
+  ASSERT_THAT(archive.End(JobId::Random(), {.message = "ended", .time = kNow, .event = "event"}),
               testing::StatusIs(absl::StatusCode::kNotFound, ::testing::_));
   EXPECT_THAT(*outbox.Due(kNow, 9, 9), IsEmpty());
-  ASSERT_THAT(archive.End(job, "ended", 5, "result", kNow, "event"), IsOk());
+  ASSERT_THAT(archive.End(job, {.message = "ended", .time = kNow, .event = "event"}), IsOk());
   EXPECT_EQ(told, 1);
   ASSERT_EQ(outbox.Due(kNow, 9, 9)->size(), 1u);
   EXPECT_EQ(outbox.Due(kNow, 9, 9)->front().body, "event");

@@ -53,14 +53,30 @@ TEST(WebhookRules, AHostIsAllowedAtItsPorts) {
         "http://[2001:db8:0:0::1]/", "http://10.1.2.3/", "http://0x0a.1.2.3/"}) {
     EXPECT_THAT(rules.Check(url), IsOk()) << url;
   }
-  for (const char* url :
-       {"https://example.org/", "https://evil-hooks.example.org/", "https://hooks.example.org.evil.org/",
-        "https://hooks.example.org:8443/", "http://hooks.example.org:443/", "https://grader.example.org/",
-        "https://hooks.example.org@evil.org/", "https://user:pass@hooks.example.org/", "https://evil.org#hooks.example.org",
-        "https://hooks.example.org/#part", "ftp://hooks.example.org/", "file:///etc/passwd", "gopher://hooks.example.org/",
-        "hooks.example.org", "//hooks.example.org/", "", "https://", "https://hooks.example.org\\@evil.org/",
-        "https://hooks.example.org/ x", "https://hooks.example.org/\n", "https://hooks.example.org/\xc3\xa4",
-        "http://10.1.2.4/", "http://[2001:db8::2]/", "http://[2001:db8::1%25lo]/"}) {
+  for (const char* url : {"https://example.org/",
+                          "https://evil-hooks.example.org/",
+                          "https://hooks.example.org.evil.org/",
+                          "https://hooks.example.org:8443/",
+                          "http://hooks.example.org:443/",
+                          "https://grader.example.org/",
+                          "https://hooks.example.org@evil.org/",
+                          "https://user:pass@hooks.example.org/",
+                          "https://evil.org#hooks.example.org",
+                          "https://hooks.example.org/#part",
+                          "ftp://hooks.example.org/",
+                          "file:///etc/passwd",
+                          "gopher://hooks.example.org/",
+                          "hooks.example.org",
+                          "//hooks.example.org/",
+                          "",
+                          "https://",
+                          "https://hooks.example.org\\@evil.org/",
+                          "https://hooks.example.org/ x",
+                          "https://hooks.example.org/\n",
+                          "https://hooks.example.org/\xc3\xa4",
+                          "http://10.1.2.4/",
+                          "http://[2001:db8::2]/",
+                          "http://[2001:db8::1%25lo]/"}) {
     const absl::Status refused = rules.Check(url);
     EXPECT_EQ(refused.code(), absl::StatusCode::kInvalidArgument) << url;
     EXPECT_EQ(ReasonOf(refused), "BAD_WEBHOOK") << url;
@@ -86,11 +102,31 @@ TEST(WebhookRules, ANameMayStandForAPublicAddressAlone) {
                               "2606:2800:220:1:248:1893:25c8:1946", "2001:4860:4860::8888"}) {
     EXPECT_TRUE(AllowsAddress(rules, address, 443)) << address;
   }
-  for (const char* address :
-       {"127.0.0.1", "127.8.8.8", "0.0.0.0", "10.0.0.1", "172.16.0.1", "172.31.255.255", "192.168.1.1", "169.254.169.254",
-        "100.64.0.1", "224.0.0.1", "255.255.255.255", "192.0.2.1", "198.18.0.1", "::1", "::", "fe80::1", "fc00::1",
-        "fd12::1", "ff02::1", "::ffff:127.0.0.1", "::ffff:8.8.8.8", "64:ff9b::a00:1", "2002:a00:1::", "2001:0:a00:1::",
-        "2001:db8::1"}) {
+  for (const char* address : {"127.0.0.1",
+                              "127.8.8.8",
+                              "0.0.0.0",
+                              "10.0.0.1",
+                              "172.16.0.1",
+                              "172.31.255.255",
+                              "192.168.1.1",
+                              "169.254.169.254",
+                              "100.64.0.1",
+                              "224.0.0.1",
+                              "255.255.255.255",
+                              "192.0.2.1",
+                              "198.18.0.1",
+                              "::1",
+                              "::",
+                              "fe80::1",
+                              "fc00::1",
+                              "fd12::1",
+                              "ff02::1",
+                              "::ffff:127.0.0.1",
+                              "::ffff:8.8.8.8",
+                              "64:ff9b::a00:1",
+                              "2002:a00:1::",
+                              "2001:0:a00:1::",
+                              "2001:db8::1"}) {
     EXPECT_FALSE(AllowsAddress(rules, address, 443)) << address;
   }
 }

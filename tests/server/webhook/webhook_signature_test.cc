@@ -10,7 +10,8 @@ namespace {
 // 0123456789abcdef0123456789abcdef -binary | base64
 TEST(WebhookSignature, IsTheHmacOfIdTimestampAndBody) {
   const std::string secret = "0123456789abcdef0123456789abcdef";
-  EXPECT_EQ(WebhookSignature(secret, "ended_1", 1614265330, R"({"test": 2432232314})"), "v1,lOlG+R1Y2ZkaEwVmn0JgIhDgXBGhsVVxuJ7x4m2s0us=");
+  EXPECT_EQ(WebhookSignature(secret, "ended_1", 1614265330, R"({"test": 2432232314})"),
+            "v1,lOlG+R1Y2ZkaEwVmn0JgIhDgXBGhsVVxuJ7x4m2s0us=");
   EXPECT_EQ(WebhookSecretText(secret), "whsec_MDEyMzQ1Njc4OWFiY2RlZjAxMjM0NTY3ODlhYmNkZWY=");
 }
 
