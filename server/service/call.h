@@ -79,7 +79,8 @@ std::string GranteeOf(const Request& request) {
   }
 }
 
-// Answers a unary call with `work(caller, request)`, a StatusOr<Response>, run in `lane(request)`.
+// Answers a unary call with `work(caller, request)`, a StatusOr<Response>, run in `lane(caller, request)`, or
+// `lane(request)` where the caller does not matter.
 template <class Request, class LaneOf, class Work>
 grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* context, const grpc::ByteBuffer* bytes,
                                  grpc::ByteBuffer* answer, LaneOf lane, Work work) {
@@ -90,7 +91,14 @@ grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* 
     return reactor;
   }
   backend.telemetry.NoteCaller(*context, caller->name);
-  const auto finish = [&backend, context, reactor, answer, work, caller = *std::move(caller),
+  const auto lane_of = [&lane, &caller](const Request& request) {
+    if constexpr (std::invocable<LaneOf, const Caller&, const Request&>) {
+      return lane(*caller, request);
+    } else {
+      return lane(request);
+    }
+  };
+  const auto finish = [&backend, context, reactor, answer, work, caller = *caller,
                        ticket = backend.calls.Enter()](const Request& request) {
     auto response = work(caller, request);
     if (response.ok()) *answer = ToBytes(*response);
@@ -117,7 +125,7 @@ grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* 
   } else {
     auto request = std::make_shared<Request>();
     if (!parse(*request)) return reactor;
-    switch (lane(*request)) {
+    switch (lane_of(*request)) {
       case Lane::kInline:
         finish(*request);
         break;

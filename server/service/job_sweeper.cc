@@ -58,7 +58,7 @@ void JobSweeper::Work() {
 }
 
 bool JobSweeper::Sweep() {
-  std::size_t looked_at = 0;
+  std::size_t removed = 0;
   for (std::size_t i = 0; i < kJobClasses; ++i) {
     const auto job_class = static_cast<JobClass>(i);
     const auto kept = options_.retention.Of(job_class);
@@ -69,13 +69,14 @@ bool JobSweeper::Sweep() {
       if (!expired.ok() || expired->empty()) break;
       for (const JobId& id : *expired) {
         if (stopping()) return false;
-        if (++looked_at > options_.most_at_once) return true;
+        if (removed == options_.most_at_once) return true;
         const auto job = jobs_.Get(id);
         if (hooks_.is_needed(id) || !hooks_.remove(id).ok()) {
           ++skip;
-        } else if (job.ok()) {
-          hooks_.removed(*job->spec);
+          continue;
         }
+        ++removed;
+        if (job.ok()) hooks_.removed(*job->spec);
       }
     }
   }

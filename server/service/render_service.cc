@@ -23,7 +23,9 @@ constexpr auto kQuickLane = [](const auto&) { return Lane::kQuick; };
 }  // namespace
 
 grpc::ServerUnaryReactor* RenderService::CreateJob(Context* context, const Bytes* request, Bytes* response) {
-  const auto lane = [this](const v1::CreateJobRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
+  const auto lane = [this](const Caller& caller, const v1::CreateJobRequest& r) {
+    return LaneOf(caller, r.scene(), backend_.scenes);
+  };
   return Answer<v1::CreateJobRequest>(
       backend_, context, request, response, lane, [this, context](const Caller& caller, const v1::CreateJobRequest& r) {
         return flatlight::CreateJob(backend_, caller, r, WhileWanted(backend_, *context));
@@ -89,7 +91,9 @@ grpc::ServerUnaryReactor* RenderService::UnshareJob(Context* context, const Byte
 }
 
 grpc::ServerUnaryReactor* RenderService::ExplainJob(Context* context, const Bytes* request, Bytes* response) {
-  const auto lane = [this](const v1::ExplainJobRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
+  const auto lane = [this](const Caller& caller, const v1::ExplainJobRequest& r) {
+    return LaneOf(caller, r.scene(), backend_.scenes);
+  };
   return Answer<v1::ExplainJobRequest>(backend_, context, request, response, lane,
                                        [this, context](const Caller& caller, const v1::ExplainJobRequest& r) {
                                          return flatlight::ExplainJob(backend_, caller, r,

@@ -2,6 +2,7 @@
 #include "server/service/scene_cache.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace flatlight {
@@ -11,38 +12,43 @@ std::size_t SceneCache::EstimateBytes(const Scene& scene) {
          scene.traits().probe_points * sizeof(Receiver);
 }
 
-std::shared_ptr<const Scene> SceneCache::Get(const std::string& sha256) {
+SceneCache::Entries::iterator SceneCache::Find(const std::string& reader, const std::string& sha256) {
+  return std::find_if(entries_.begin(), entries_.end(),
+                      [&](const Entry& entry) { return entry.sha256 == sha256 && entry.reader == reader; });
+}
+
+std::shared_ptr<const Scene> SceneCache::Get(const std::string& reader, const std::string& sha256) {
   const std::lock_guard lock(mutex_);
-  const auto found =
-      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.sha256 == sha256; });
+  const auto found = Find(reader, sha256);
   if (found == entries_.end()) return nullptr;
   entries_.splice(entries_.begin(), entries_, found);
   return found->scene;
 }
 
-void SceneCache::Put(const std::string& sha256, std::shared_ptr<const Scene> scene) {
+void SceneCache::Put(const std::string& reader, const std::string& sha256, std::shared_ptr<const Scene> scene) {
   const std::size_t bytes = EstimateBytes(*scene);
   if (bytes > max_bytes_) return;
   Entries gone;
   const std::lock_guard lock(mutex_);
-  DropLocked(sha256, gone);
-  while (bytes_ + bytes > max_bytes_) DropLocked(entries_.back().sha256, gone);
-  entries_.push_front({sha256, std::move(scene), bytes});
+  if (const auto found = Find(reader, sha256); found != entries_.end()) DropLocked(found, gone);
+  while (bytes_ + bytes > max_bytes_) DropLocked(std::prev(entries_.end()), gone);
+  entries_.push_front({reader, sha256, std::move(scene), bytes});
   bytes_ += bytes;
 }
 
 void SceneCache::Drop(const std::string& sha256) {
   Entries gone;
   const std::lock_guard lock(mutex_);
-  DropLocked(sha256, gone);
+  for (auto entry = entries_.begin(); entry != entries_.end();) {
+    const auto next = std::next(entry);
+    if (entry->sha256 == sha256) DropLocked(entry, gone);
+    entry = next;
+  }
 }
 
-void SceneCache::DropLocked(const std::string& sha256, Entries& gone) {
-  const auto found =
-      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.sha256 == sha256; });
-  if (found == entries_.end()) return;
-  bytes_ -= found->bytes;
-  gone.splice(gone.begin(), entries_, found);
+void SceneCache::DropLocked(Entries::iterator entry, Entries& gone) {
+  bytes_ -= entry->bytes;
+  gone.splice(gone.begin(), entries_, entry);
 }
 
 }  // namespace flatlight

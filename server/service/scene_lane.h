@@ -7,15 +7,15 @@
 
 namespace flatlight {
 
-// Which lane reads a scene by name.
-inline Lane LaneOf(const std::string& scene_name, SceneStore& scenes) {
-  const auto scene = FindScene(scene_name, scenes);
+// Which lane reads a scene by name. One that the caller may not see is as one that is not there.
+inline Lane LaneOf(const Caller& caller, const std::string& scene_name, SceneStore& scenes) {
+  const auto scene = FindSeenScene(caller, scene_name, scenes);
   return scene.ok() && scene->json->size() > kMaxQuickBytes ? Lane::kSlow : Lane::kQuick;
 }
 
 // Which lane reads a scene that a small request names or carries.
-inline Lane LaneOf(const v1::SceneSource& source, SceneStore& scenes) {
-  return source.has_name() ? LaneOf(source.name(), scenes) : Lane::kQuick;
+inline Lane LaneOf(const Caller& caller, const v1::SceneSource& source, SceneStore& scenes) {
+  return source.has_name() ? LaneOf(caller, source.name(), scenes) : Lane::kQuick;
 }
 
 }  // namespace flatlight

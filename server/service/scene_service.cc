@@ -23,7 +23,9 @@ grpc::ServerUnaryReactor* SceneService::UploadScene(Context* context, const Byte
 }
 
 grpc::ServerUnaryReactor* SceneService::GetScene(Context* context, const Bytes* request, Bytes* response) {
-  const auto lane = [this](const v1::GetSceneRequest& r) { return LaneOf(r.name(), backend_.scenes); };
+  const auto lane = [this](const Caller& caller, const v1::GetSceneRequest& r) {
+    return LaneOf(caller, r.name(), backend_.scenes);
+  };
   return Answer<v1::GetSceneRequest>(
       backend_, context, request, response, lane,
       [this](const Caller& caller, const v1::GetSceneRequest& r) { return flatlight::GetScene(backend_, caller, r); });
@@ -58,7 +60,9 @@ grpc::ServerUnaryReactor* SceneService::UnshareScene(Context* context, const Byt
 }
 
 grpc::ServerUnaryReactor* SceneService::ValidateScene(Context* context, const Bytes* request, Bytes* response) {
-  const auto lane = [this](const v1::ValidateSceneRequest& r) { return LaneOf(r.scene(), backend_.scenes); };
+  const auto lane = [this](const Caller& caller, const v1::ValidateSceneRequest& r) {
+    return LaneOf(caller, r.scene(), backend_.scenes);
+  };
   return Answer<v1::ValidateSceneRequest>(backend_, context, request, response, lane,
                                           [this, context](const Caller& caller, const v1::ValidateSceneRequest& r) {
                                             return flatlight::ValidateScene(backend_, caller, r,

@@ -67,11 +67,12 @@ absl::StatusOr<NamedScene> FindScene(const std::string& name, SceneStore& scenes
 }
 
 absl::StatusOr<NamedScene> FindSeenScene(const Caller& caller, const std::string& name, SceneStore& scenes) {
-  auto scene = FindScene(name, scenes);
-  if (!scene.ok() || scene->info.gallery()) return scene;
-  const std::string sha256 = name.substr(kPrefix.size());
-  if (!MaySeeScene(caller, sha256, scenes)) return NoSuchScene(sha256);
-  return scene;
+  // Before it is looked for: what others have takes as long as what nobody has.
+  if (name.starts_with(kPrefix) && FindGalleryScene(SceneIdOf(name)) == nullptr) {
+    const std::string sha256 = SceneIdOf(name);
+    if (IsSha256(sha256) && !MaySeeScene(caller, sha256, scenes)) return NoSuchScene(sha256);
+  }
+  return FindScene(name, scenes);
 }
 
 namespace {
@@ -88,7 +89,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> LoadNamed(const v1::SceneSource& so
   if (!named.ok()) return named.status();
   const std::string id = name.substr(kPrefix.size());
   const bool as_stored = source.probes().empty();
-  if (auto built = as_stored ? shelf.built.Get(id) : nullptr) {
+  if (auto built = as_stored ? shelf.built.Get(shelf.caller.name, id) : nullptr) {
     shelf.uploads.SetTitle(shelf.caller.name, id, built->name());  // The file may have been deleted and uploaded again.
     return built;
   }
@@ -100,7 +101,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> LoadNamed(const v1::SceneSource& so
   if (!WithinLimits(proto, shelf.limits, diagnostics)) return nullptr;
   if (absl::Status wanted = proceed(); !wanted.ok()) return wanted;
   auto scene = SceneFromProto(proto, diagnostics);
-  if (scene != nullptr && as_stored && !named->info.gallery()) shelf.built.Put(id, scene);
+  if (scene != nullptr && as_stored && !named->info.gallery()) shelf.built.Put(shelf.caller.name, id, scene);
   return scene;
 }
 

@@ -114,6 +114,7 @@ struct Server::Parts {
         webhooks(std::move(outbox)),
         webhook_sender(options.webhooks, webhook_rules, *webhooks, webhook_key, "flatlightd/" + BuildVersion(),
                        [this](const WebhookAttempt& attempt) { NoteWebhook(attempt); }),
+        indexes(options.indexes == nullptr ? own_indexes : *options.indexes),
         pool(options.threads),
         storage(std::move(opened)),
         quotas(options.quotas),
@@ -291,7 +292,8 @@ struct Server::Parts {
   const WebhookRules webhook_rules;
   const std::unique_ptr<WebhookOutbox> webhooks;
   WebhookSender webhook_sender;
-  IndexCache indexes{kMaxIndexedElements, kMaxSolvedBytes};
+  IndexCache own_indexes{kMaxIndexedElements, kMaxSolvedBytes};
+  IndexCache& indexes;
   ThreadPool pool;
   std::unique_ptr<Storage> storage;  // Null, as are the archive and `durable`: nothing outlives the process.
   const QuotaTable quotas;

@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "core/execution/clock.h"
+#include "core/render/index_cache.h"
 #include "server/quota/quotas.h"
 #include "server/scheduler/scheduler.h"
 #include "server/service/limits.h"
@@ -44,6 +45,8 @@ struct ServerOptions {
   std::function<std::chrono::system_clock::time_point()> day_clock = std::chrono::system_clock::now;
   std::function<std::chrono::system_clock::time_point()> retention_clock = std::chrono::system_clock::now;
   std::chrono::milliseconds retention_interval{0};  // Between looks for jobs that have expired; 0: see JobSweeper.
+  // Tests give their own, which outlives the server; null: it has one of its own.
+  IndexCache* indexes = nullptr;
   // Tests give their own; else StartRendering, on indexes that jobs share (JobSpec::sharers).
   std::function<std::unique_ptr<Rendering>(std::shared_ptr<const Scene>, const Plan&)> start_rendering;
 };

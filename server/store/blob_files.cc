@@ -91,9 +91,9 @@ absl::Status WriteFile(const std::string& path, std::string_view bytes) {
   return SyncFolder(path.substr(0, path.rfind('/')));
 }
 
-absl::Status BlobFiles::Write(const std::string& sha256, std::string_view bytes) {
+absl::Status BlobFiles::Write(const std::string& sha256, std::string_view bytes, IfThere if_there) {
   const std::string path = PathOf(sha256);
-  if (access(path.c_str(), F_OK) == 0) return absl::OkStatus();
+  if (if_there == IfThere::kLeave && access(path.c_str(), F_OK) == 0) return absl::OkStatus();
   const std::string folder = path.substr(0, path.rfind('/'));
   if (access(folder.c_str(), F_OK) != 0) {
     for (const std::string& needed : {folder_, folder}) {

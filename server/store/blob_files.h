@@ -17,9 +17,10 @@ class BlobFiles {
  public:
   explicit BlobFiles(std::string folder) : folder_(std::move(folder)) {}
 
+  enum class IfThere : std::uint8_t { kLeave, kReplace };
   // On return the bytes are on the disk under their name, or, on an error, nothing is. One that is there already is
-  // left as it is.
-  absl::Status Write(const std::string& sha256, std::string_view bytes);
+  // left as it is, or, so that this takes as long as if it were not, replaced by itself.
+  absl::Status Write(const std::string& sha256, std::string_view bytes, IfThere if_there = IfThere::kLeave);
   // DATA_LOSS if it is missing or its bytes are not those of its name.
   absl::StatusOr<std::string> Read(const std::string& sha256) const;
   void Remove(const std::string& sha256);

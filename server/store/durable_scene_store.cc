@@ -85,7 +85,8 @@ absl::StatusOr<std::uint64_t> DurableSceneStore::Upload(const std::string& owner
 }
 
 absl::Status DurableSceneStore::Keep(const std::string& owner, const StoredScene& scene) {
-  const auto blob = storage_.Prepare(scene.sha256, scene.bytes);
+  // Whether another one has it must not be told by the time that this takes.
+  const auto blob = storage_.Prepare(scene.sha256, scene.bytes, BlobFiles::IfThere::kReplace);
   if (!blob.ok()) return blob.status();
   return storage_.Write([&](Writing& writing) -> absl::Status {
     Statement there = writing.Prepare("SELECT 1 FROM scenes WHERE sha256 = ?");
@@ -97,6 +98,8 @@ absl::Status DurableSceneStore::Keep(const std::string& owner, const StoredScene
       insert.Bind(std::string_view(scene.sha256)).Bind(std::string_view(scene.title));
       insert.Bind(static_cast<std::int64_t>(scene.bytes->size()));
       if (absl::Status inserted = insert.Run(); !inserted.ok()) return inserted;
+    } else if (absl::Status rewritten = writing.Rewrite(*blob); !rewritten.ok()) {
+      return rewritten;
     }
     return writing.Prepare("INSERT OR IGNORE INTO scene_owners(owner, sha256, title) VALUES(?, ?, '')")
         .Bind(std::string_view(owner))

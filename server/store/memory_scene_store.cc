@@ -152,9 +152,10 @@ absl::Status MemorySceneStore::Reserve(const UploadName& name, const std::option
     if (absl::Status fits = CheckRoom(name, *room, bytes); !fits.ok()) return fits;
   }
   if (used_bytes_ + bytes > limits_.max_total_bytes) {
+    // How many there are would tell whether what was just uploaded is kept already.
     return MakeQuotaError("SCENE_STORE_FULL", "max_total_bytes",
-                          "uploaded scenes hold " + std::to_string(used_bytes_) +
-                              " bytes; allowed: " + std::to_string(limits_.max_total_bytes) + "; delete one first",
+                          "uploaded scenes fill the " + std::to_string(limits_.max_total_bytes) +
+                              " bytes that are allowed for all; delete one first",
                           kRetryAfter);
   }
   used_bytes_ += bytes;

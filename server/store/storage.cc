@@ -69,6 +69,14 @@ absl::Status Storage::Writing::Use(const Blob& blob) {
   return (in_line ? use.BindBlob(*blob.bytes) : use.BindNull()).Run();
 }
 
+absl::Status Storage::Writing::Rewrite(const Blob& blob) {
+  if (blob.bytes->size() > kMostInlineBytes) return absl::OkStatus();  // Prepare has done so.
+  return Prepare("UPDATE blobs SET bytes = ? WHERE sha256 = ?")
+      .BindBlob(*blob.bytes)
+      .Bind(std::string_view(blob.sha256))
+      .Run();
+}
+
 absl::Status Storage::Writing::Release(const std::optional<std::string>& sha256) {
   if (!sha256) return absl::OkStatus();
   touched_.push_back(*sha256);
@@ -110,10 +118,11 @@ absl::StatusOr<Blob> Storage::Prepare(std::string bytes) {
   return Prepare(std::move(sha256), std::move(shared));
 }
 
-absl::StatusOr<Blob> Storage::Prepare(std::string sha256, std::shared_ptr<const std::string> bytes) {
+absl::StatusOr<Blob> Storage::Prepare(std::string sha256, std::shared_ptr<const std::string> bytes,
+                                      BlobFiles::IfThere if_there) {
   Blob blob{std::move(sha256), std::move(bytes)};
   if (blob.bytes->size() > kMostInlineBytes) {
-    if (absl::Status written = files_.Write(blob.sha256, *blob.bytes); !written.ok()) return written;
+    if (absl::Status written = files_.Write(blob.sha256, *blob.bytes, if_there); !written.ok()) return written;
   }
   return blob;
 }

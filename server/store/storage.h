@@ -41,6 +41,8 @@ class Storage {
     Statement Prepare(const std::string& sql) { return database().Prepare(sql); }
     // One more, or one less, column names the blob.
     absl::Status Use(const Blob& blob);
+    // What is there already is written once more: so that this takes as long as Use of what is new.
+    absl::Status Rewrite(const Blob& blob);
     absl::Status Release(const std::optional<std::string>& sha256);
 
    private:
@@ -54,7 +56,8 @@ class Storage {
 
   // Hashes bytes and writes a large blob's file, before the transaction that uses it.
   absl::StatusOr<Blob> Prepare(std::string bytes);
-  absl::StatusOr<Blob> Prepare(std::string sha256, std::shared_ptr<const std::string> bytes);
+  absl::StatusOr<Blob> Prepare(std::string sha256, std::shared_ptr<const std::string> bytes,
+                               BlobFiles::IfThere if_there = BlobFiles::IfThere::kLeave);
   // Checked against its hash.
   absl::StatusOr<std::string> Fetch(const std::string& sha256);
 

@@ -15,26 +15,38 @@ namespace {
 TEST(SceneCache, TheSceneUsedLongestAgoGoesFirst) {
   const auto scene = testing::FloorAndLamp({4});
   SceneCache cache(2 * SceneCache::EstimateBytes(*scene));
-  cache.Put("a", scene);
-  cache.Put("b", scene);
-  EXPECT_EQ(cache.Get("a"), scene);
-  cache.Put("c", scene);
-  EXPECT_EQ(cache.Get("b"), nullptr);
-  EXPECT_EQ(cache.Get("a"), scene);
-  EXPECT_EQ(cache.Get("c"), scene);
+  cache.Put("ada", "a", scene);
+  cache.Put("ada", "b", scene);
+  EXPECT_EQ(cache.Get("ada", "a"), scene);
+  cache.Put("ada", "c", scene);
+  EXPECT_EQ(cache.Get("ada", "b"), nullptr);
+  EXPECT_EQ(cache.Get("ada", "a"), scene);
+  EXPECT_EQ(cache.Get("ada", "c"), scene);
   cache.Drop("a");
-  EXPECT_EQ(cache.Get("a"), nullptr);
-  cache.Put("d", scene);
-  EXPECT_EQ(cache.Get("c"), scene) << "there was room";
+  EXPECT_EQ(cache.Get("ada", "a"), nullptr);
+  cache.Put("ada", "d", scene);
+  EXPECT_EQ(cache.Get("ada", "c"), scene) << "there was room";
 }
 
 TEST(SceneCache, ASceneLargerThanAllDrivesNoneOut) {
   const auto small = testing::FloorAndLamp({4});
   SceneCache cache(SceneCache::EstimateBytes(*small));
-  cache.Put("small", small);
-  cache.Put("large", testing::FloorAndLamp({1000}));
-  EXPECT_EQ(cache.Get("large"), nullptr);
-  EXPECT_EQ(cache.Get("small"), small);
+  cache.Put("ada", "small", small);
+  cache.Put("ada", "large", testing::FloorAndLamp({1000}));
+  EXPECT_EQ(cache.Get("ada", "large"), nullptr);
+  EXPECT_EQ(cache.Get("ada", "small"), small);
+}
+
+TEST(SceneCache, NobodyFindsWhatAnotherOneHasBuilt) {
+  const auto scene = testing::FloorAndLamp({4});
+  SceneCache cache(4 * SceneCache::EstimateBytes(*scene));
+  cache.Put("ada", "a", scene);
+  EXPECT_EQ(cache.Get("bob", "a"), nullptr);
+  cache.Put("bob", "a", scene);
+  EXPECT_EQ(cache.Get("bob", "a"), scene);
+  cache.Drop("a");
+  EXPECT_EQ(cache.Get("ada", "a"), nullptr);
+  EXPECT_EQ(cache.Get("bob", "a"), nullptr);
 }
 
 class LoadSceneTest : public ::testing::Test {
