@@ -133,6 +133,13 @@ absl::StatusOr<Submission> MakeSubmission(Backend& backend, const v1::CreateJobR
 
 v1::Job WholeJob(const JobRecord& job) { return JobToProto(*job.spec, *job.state, JobView::kWhole); }
 
+// As who has made it sees it.
+absl::StatusOr<v1::Job> CreatedJob(Backend& backend, const JobRecord& record) {
+  v1::Job job = WholeJob(record);
+  if (absl::Status told = TellWebhook(backend.webhooks, *record.spec, job); !told.ok()) return told;
+  return job;
+}
+
 // With its shares and its webhook, which are for those who may change them.
 absl::StatusOr<v1::Job> SharedJob(Backend& backend, const Caller& caller, const JobRecord& record) {
   v1::Job job = WholeJob(record);
@@ -182,7 +189,7 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
     if (*earlier) {
       const auto job = backend.jobs.Get(**earlier);
       if (!job.ok()) return job.status();
-      return WholeJob(*job);
+      return CreatedJob(backend, *job);
     }
   }
   const Quotas& quotas = backend.guard.QuotasOf(caller);
@@ -214,9 +221,7 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
   submission->webhook = request.webhook();
   const auto job = backend.scheduler.Submit(std::move(made->spec), std::move(made->scene), *submission, *key, quotas);
   if (!job.ok()) return job.status();
-  v1::Job answer = WholeJob(*job);
-  if (absl::Status told = TellWebhook(backend.webhooks, *job->spec, answer); !told.ok()) return told;
-  return answer;
+  return CreatedJob(backend, *job);
 }
 
 absl::StatusOr<JobRun::Restored> RestoreJob(Backend& backend, JobArchive& archive, const JobSpec& accepted) {

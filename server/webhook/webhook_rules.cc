@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 
 #include "absl/strings/ascii.h"
@@ -137,10 +136,11 @@ absl::Status WebhookRules::Check(const std::string& text) const {
   const Url url = Parse(text);
   const std::string scheme = url == nullptr ? "" : PartOf(url, CURLUPART_SCHEME);
   if (scheme != "http" && scheme != "https") {
-    return Refused("webhook: \"" + text + "\" must be http://HOST… or https://HOST…, without a user or password");
+    return Refused("webhook: \"" + text +
+                   "\" must be http://HOST or https://HOST, with a path if wanted, and without a user or password");
   }
   if (!PartOf(url, CURLUPART_FRAGMENT).empty() || !PartOf(url, CURLUPART_ZONEID).empty()) {
-    return Refused("webhook: \"" + text + "\" must have no fragment (#…) and no zone (%…)");
+    return Refused("webhook: \"" + text + "\" must have no fragment (#) and no zone (%)");
   }
   int port = 0;
   const bool has_port = absl::SimpleAtoi(PartOf(url, CURLUPART_PORT, CURLU_DEFAULT_PORT), &port);

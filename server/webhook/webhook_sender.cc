@@ -72,7 +72,7 @@ void WebhookSender::Work() {
     curl_multi_perform(multi_.get(), &running);
     const bool any_ended = TakeEnded();
     WriteNotes();
-    if (is_closing && (flights_.empty() || now >= closing)) break;
+    if (is_closing && ((flights_.empty() && !any_ended) || now >= closing)) break;
     // Each that ends lets in the next.
     milliseconds wait = any_ended ? milliseconds(0) : UntilNext();
     if (is_closing) wait = std::min(wait, std::chrono::ceil<milliseconds>(closing - now));

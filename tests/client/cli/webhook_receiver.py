@@ -11,6 +11,8 @@ class Receiver:
 
     def __init__(self, *answers, headers=(), port=0):
         self.posts = []  # (path, headers in lower case, body), in the order of their arrival.
+        self.most_at_once = 0
+        open_posts = []
         answers = list(answers)
         lock = threading.Lock()
 
@@ -20,8 +22,13 @@ class Receiver:
                 with lock:
                     self.posts.append((handler.path, {key.lower(): value for key, value in handler.headers.items()}, body))
                     answer = answers.pop(0) if answers else 200
+                    open_posts.append(handler)
+                    self.most_at_once = max(self.most_at_once, len(open_posts))
                 if answer < 100:
                     self._closing.wait(answer)
+                with lock:
+                    open_posts.remove(handler)
+                if answer < 100:
                     return
                 handler.send_response(answer)
                 for name, value in headers:
