@@ -371,12 +371,12 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
     if (!connection.ok()) return connection.status();
     users = *std::move(connection);
   }
-  const auto connect = [&] {
+  const auto open_database = [&] {
     return options.data.empty() ? NewMemoryDatabase() : Database::OpenExisting(Storage::DatabasePath(options.data));
   };
-  auto for_rooms = connect();
+  auto for_rooms = open_database();
   if (!for_rooms.ok()) return for_rooms.status();
-  auto for_webhooks = connect();
+  auto for_webhooks = open_database();
   if (!for_webhooks.ok()) return for_webhooks.status();
   auto webhooks = std::make_unique<WebhookOutbox>(*std::move(for_webhooks));
   const auto webhook_key = webhooks->Key();

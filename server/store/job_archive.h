@@ -105,6 +105,7 @@ class JobArchive {
   static constexpr std::size_t kMostGranted = 10'000;
 
   void AddStoredBytes(const std::string& owner, std::int64_t bytes);
+
   Storage& storage_;
   const std::string build_;
   std::function<void()> webhook_due_ = [] {};
