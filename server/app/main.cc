@@ -13,6 +13,7 @@
 #include "core/execution/thread_pool.h"
 #include "server/app/options.h"
 #include "server/app/shutdown_signals.h"
+#include "server/app/spare_memory.h"
 #include "server/app/token.h"
 #include "server/service/build_version.h"
 #include "server/service/server.h"
@@ -80,10 +81,11 @@ int Run(const DaemonOptions& options) {
   if (!options.metrics.empty()) {
     std::fprintf(stderr, "flatlightd metrics at http://%s/metrics\n", (*server)->metrics_address().c_str());
   }
-  signals.Await(options.exit_with_parent, [&] {
+  const auto reopen_logs = [&] {
     const absl::Status reopened = (*server)->ReopenLogs();
     if (!reopened.ok()) Fail(reopened, kCannotServe);
-  });
+  };
+  signals.Await(options.exit_with_parent, reopen_logs, [] { GiveBackSpareMemory(); });
   std::signal(SIGALRM, [](int) { _exit(0); });
   alarm(kHardStopSeconds);
   (*server)->Drain(kDrainGrace);

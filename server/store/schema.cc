@@ -151,6 +151,18 @@ CREATE TABLE cpu_days(
 ALTER TABLE jobs ADD COLUMN stored_bytes INTEGER;
 )sql";
 
+// A number that is another after every change of users, whoever makes it: see UserDirectory.
+constexpr char kUsersVersion[] = R"sql(
+CREATE TABLE users_version(version INTEGER NOT NULL);
+INSERT INTO users_version VALUES(1);
+CREATE TRIGGER users_added AFTER INSERT ON users BEGIN UPDATE users_version SET version = version + 1; END;
+CREATE TRIGGER users_changed AFTER UPDATE ON users BEGIN UPDATE users_version SET version = version + 1; END;
+CREATE TRIGGER users_removed AFTER DELETE ON users BEGIN UPDATE users_version SET version = version + 1; END;
+CREATE TRIGGER members_added AFTER INSERT ON memberships BEGIN UPDATE users_version SET version = version + 1; END;
+CREATE TRIGGER members_changed AFTER UPDATE ON memberships BEGIN UPDATE users_version SET version = version + 1; END;
+CREATE TRIGGER members_removed AFTER DELETE ON memberships BEGIN UPDATE users_version SET version = version + 1; END;
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -161,8 +173,8 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs,  kScenes,      kUsers,       kPauses, kGrants,
-                                                       kRooms, kSceneOwners, kJobsByOwner, kQuotas, kSceneGrants};
+  static const std::vector<std::string> kMigrations = {kJobs,        kScenes,      kUsers,  kPauses,      kGrants,      kRooms,
+                                                       kSceneOwners, kJobsByOwner, kQuotas, kSceneGrants, kUsersVersion};
   return kMigrations;
 }
 
