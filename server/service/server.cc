@@ -23,6 +23,7 @@
 #include "server/service/connection_limits.h"
 #include "server/service/job_format.h"
 #include "server/service/listen_address.h"
+#include "server/service/machine.h"
 #include "server/service/render_calls.h"
 #include "server/service/render_service.h"
 #include "server/service/review_service.h"
@@ -126,6 +127,7 @@ struct Server::Parts {
         backend{.version = BuildVersion(),
                 .limits = options.limits,
                 .threads = pool.threads(),
+                .processors = UsableProcessors(),
                 .guard = Guard(options.token, std::move(users), quotas,
                                options.request_clock == nullptr ? clock : *options.request_clock),
                 .jobs = jobs,

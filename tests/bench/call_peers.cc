@@ -49,11 +49,11 @@ int MaybeServeEcho(int argc, char** argv) {
   return argc > 2 && std::string(argv[1]) == "--listen" ? ServeEcho(argv[2]) : -1;
 }
 
-CallPeers::CallPeers(const std::string& self)
+CallPeers::CallPeers(const std::string& self, int requests)
     : data_(folder_.path() + "/data"),
       authorization_("Bearer " + AddUser(DaemonBesides(self), data_)),
       echo_("/proc/self/exe", echo_folder_.path()),
-      daemon_(DaemonBesides(self), folder_.path(), {"--data", data_, "--quota", "student.requests=1000000"}) {}
+      daemon_(DaemonBesides(self), folder_.path(), {"--data", data_, "--quota", "student.requests=" + std::to_string(requests)}) {}
 
 std::string CallPeers::EndedJob() {
   CallContext context;

@@ -19,12 +19,12 @@ int MaybeServeEcho(int argc, char** argv);
 // An echo server of this program, and a flatlightd with a folder and one user, both on Unix sockets.
 class CallPeers {
  public:
-  // `self`: argv[0] of the bench.
-  explicit CallPeers(const std::string& self);
+  // `self`: argv[0] of the bench. `requests`: how many a second, in the long run, the user may make.
+  CallPeers(const std::string& self, int requests);
 
   BenchDaemon& echo() { return echo_; }
   BenchDaemon& daemon() { return daemon_; }
-  // "Bearer TOKEN" of the user, a student whose limit of requests is asked about with every call and never reached.
+  // "Bearer TOKEN" of the user, a student.
   const std::string& authorization() const { return authorization_; }
   // Of that user, in a state that does not change any more.
   std::string EndedJob();
