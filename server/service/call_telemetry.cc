@@ -171,7 +171,8 @@ void CallTelemetry::Ended(const grpc::ServerContextBase* context, const Call& ca
     if (auto node = shard.notes.extract(context)) notes = std::move(node.mapped());
   }
   const std::string_view method = call.method;
-  const bool changes = !OnlyLooks(method.substr(method.rfind('/') + 1)) && (!notes.resource.empty() || !call.status.ok());
+  const bool changes =
+      !OnlyLooks(method.substr(method.rfind('/') + 1)) && (!notes.resource.empty() || !call.status.ok());
   const bool audited = audit_ != nullptr && (changes || IsDenied(call.status));
   if (!ours || (!audited && calls_ == nullptr)) return;
   JsonLog::Line line;

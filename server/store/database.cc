@@ -171,8 +171,8 @@ absl::Status Database::Execute(const std::string& sql) {
 std::optional<Database::LogHeader> Database::ReadLogHeader() {
   constexpr int kRegionBytes = 32 << 10;  // As SQLite maps it.
   sqlite3_file* file = nullptr;
-  if (sqlite3_file_control(database_.get(), "main", SQLITE_FCNTL_FILE_POINTER, &file) != SQLITE_OK ||
-      file == nullptr || file->pMethods == nullptr || file->pMethods->iVersion < 2) {
+  if (sqlite3_file_control(database_.get(), "main", SQLITE_FCNTL_FILE_POINTER, &file) != SQLITE_OK || file == nullptr ||
+      file->pMethods == nullptr || file->pMethods->iVersion < 2) {
     return std::nullopt;
   }
   void volatile* region = nullptr;

@@ -69,8 +69,8 @@ class Database {
   // One or more statements without parameters.
   absl::Status Execute(const std::string& sql);
   // What connections tell each other through shared memory of what has been committed (the first header of the
-  // write-ahead log's index, https://sqlite.org/walformat.html): where it is as it was, SQLite too takes it that nothing
-  // was. Costs no system call. Absent until this connection has read something.
+  // write-ahead log's index, https://sqlite.org/walformat.html): where it is as it was, SQLite too takes it that
+  // nothing was. Costs no system call. Absent where there is no such log.
   using LogHeader = std::array<std::uint32_t, 12>;
   std::optional<LogHeader> ReadLogHeader();
   // By the statement before.

@@ -173,8 +173,9 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs,        kScenes,      kUsers,  kPauses,      kGrants,      kRooms,
-                                                       kSceneOwners, kJobsByOwner, kQuotas, kSceneGrants, kUsersVersion};
+  static const std::vector<std::string> kMigrations = {kJobs,   kScenes,      kUsers,       kPauses,
+                                                       kGrants, kRooms,       kSceneOwners, kJobsByOwner,
+                                                       kQuotas, kSceneGrants, kUsersVersion};
   return kMigrations;
 }
 

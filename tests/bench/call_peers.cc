@@ -53,7 +53,8 @@ CallPeers::CallPeers(const std::string& self, int requests)
     : data_(folder_.path() + "/data"),
       authorization_("Bearer " + AddUser(DaemonBesides(self), data_)),
       echo_("/proc/self/exe", echo_folder_.path()),
-      daemon_(DaemonBesides(self), folder_.path(), {"--data", data_, "--quota", "student.requests=" + std::to_string(requests)}) {}
+      daemon_(DaemonBesides(self), folder_.path(),
+              {"--data", data_, "--quota", "student.requests=" + std::to_string(requests)}) {}
 
 std::string CallPeers::EndedJob() {
   CallContext context;

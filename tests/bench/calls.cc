@@ -33,7 +33,7 @@ constexpr int kUnderWay = 16;  // Of each channel.
 constexpr int kTurns = 15;
 constexpr std::chrono::milliseconds kTurn{500};
 constexpr int kRequests = 1'000'000;  // A second: asked about with every call, never reached.
-constexpr double kGoal = 70;  // % of the empty call's rate.
+constexpr double kGoal = 70;          // % of the empty call's rate.
 
 double CpuSecondsOf(pid_t process) {
   clockid_t clock;

@@ -108,8 +108,8 @@ int Run(const std::string& self, const std::string& csv) {
 
   const std::string empty = write_body("empty", "");
   std::vector<Kind> kinds;
-  kinds.push_back(MakeKind("empty call, no token", peers.echo(), "ServerService/GetCapabilities", "", empty,
-                           Framed("").size()));
+  kinds.push_back(
+      MakeKind("empty call, no token", peers.echo(), "ServerService/GetCapabilities", "", empty, Framed("").size()));
   kinds.push_back(MakeKind("GetCapabilities with a token", peers.daemon(), "ServerService/GetCapabilities",
                            peers.authorization(), empty, most_capabilities));
   kinds.push_back(MakeKind("GetJob with a token", peers.daemon(), "RenderService/GetJob", peers.authorization(),

@@ -240,10 +240,11 @@ int Run(const std::string& program, double seconds, const std::string& csv) {
   const Quartiles quartiles = QuartilesOf(busy);
   std::printf("%ld jobs, %ld refused, %ld calls failed\n", counts.jobs.load(), counts.refused.load(),
               counts.failed.load());
-  std::printf("at work %.0f MiB (median; most: %.0f), at rest %.1f; in the last %.0f jobs that grew by %.2f +- %.2f MiB "
-              "(95 %%), %.2f +- %.2f KiB a job: %s (at most %.0f %% may be)\n",
-              quartiles.median, *std::max_element(busy.begin(), busy.end()), line.mean, 1e3 * span, span * line.slope,
-              span * line.error, 1.024 * line.slope, 1.024 * line.error, flat ? "flat" : "NOT FLAT", 100 * kMostGrowth);
+  std::printf(
+      "at work %.0f MiB (median; most: %.0f), at rest %.1f; in the last %.0f jobs that grew by %.2f +- %.2f MiB "
+      "(95 %%), %.2f +- %.2f KiB a job: %s (at most %.0f %% may be)\n",
+      quartiles.median, *std::max_element(busy.begin(), busy.end()), line.mean, 1e3 * span, span * line.slope,
+      span * line.error, 1.024 * line.slope, 1.024 * line.error, flat ? "flat" : "NOT FLAT", 100 * kMostGrowth);
   return samples.Write(csv) && flat && counts.failed == 0 && counts.jobs > 0 ? 0 : 1;
 }
 
