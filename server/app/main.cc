@@ -7,7 +7,9 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "core/execution/thread_pool.h"
@@ -85,7 +87,12 @@ int Run(const DaemonOptions& options) {
     const absl::Status reopened = (*server)->ReopenLogs();
     if (!reopened.ok()) Fail(reopened, kCannotServe);
   };
-  signals.Await(options.exit_with_parent, reopen_logs, [] { GiveBackSpareMemory(); });
+  const auto tidy = [cpu_seconds = 0.0]() mutable {
+    constexpr double kRestSeconds = 0.1;  // Of processor time since the last time.
+    const double now = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    GiveBackSpareMemory(now - std::exchange(cpu_seconds, now) < kRestSeconds);
+  };
+  signals.Await(options.exit_with_parent, reopen_logs, tidy);
   std::signal(SIGALRM, [](int) { _exit(0); });
   alarm(kHardStopSeconds);
   (*server)->Drain(kDrainGrace);

@@ -24,11 +24,11 @@ double ResidentOwnBytes() {
 
 }  // namespace
 
-bool GiveBackSpareMemory() {
+bool GiveBackSpareMemory(bool rests) {
 #ifdef __GLIBC__
   const struct mallinfo2 heap = mallinfo2();
   const auto used = static_cast<double>(heap.uordblks + heap.hblkhd);
-  if (ResidentOwnBytes() - used <= kSpareBytes + kSpareShare * used) return false;
+  if (!rests && ResidentOwnBytes() - used <= kSpareBytes + kSpareShare * used) return false;
   return malloc_trim(0) != 0;
 #else
   return false;

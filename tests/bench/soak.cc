@@ -34,8 +34,8 @@ using Render = v1::RenderService::Stub;
 constexpr int kCallers = 8;
 constexpr std::size_t kKept = 10;
 constexpr double kMostGrowth = 0.05;
-constexpr int kRounds = 20;
-constexpr std::chrono::seconds kRest{8};  // The server gives back what it does not need about every 5 s.
+constexpr int kRounds = 15;
+constexpr std::chrono::seconds kRest{12};  // Every 5 s a server gives back what it does not need; all, if it rested.
 
 std::vector<v1::CreateJobRequest> Requests() {
   std::vector<v1::CreateJobRequest> requests;
@@ -215,10 +215,9 @@ int Run(const std::string& program, double seconds, const std::string& csv) {
   }
   Samples samples(daemon);
   std::vector<double> busy, resting, thousand_jobs;
-  const Clock::time_point start = Clock::now();
-  const auto round_time = std::chrono::milliseconds(static_cast<long>(1000 * seconds / kRounds));
+  const auto work_time = std::chrono::milliseconds(static_cast<long>(1000 * seconds / kRounds)) - kRest;
   for (int round = 1; round <= kRounds; ++round) {
-    const Clock::time_point end = start + round * round_time - kRest;
+    const Clock::time_point end = Clock::now() + work_time;
     std::vector<std::thread> working;
     for (const auto& caller : callers) working.emplace_back([&] { caller->Work(end); });
     while (Clock::now() < end) {
@@ -253,6 +252,6 @@ int Run(const std::string& program, double seconds, const std::string& csv) {
 
 int main(int argc, char** argv) {
   const double seconds = argc > 1 ? std::atof(argv[1]) : 600;
-  if (!(seconds >= 200)) flatlight::Die("soak SECONDS: at least 200");
+  if (!(seconds >= 300)) flatlight::Die("soak SECONDS: at least 300");
   return flatlight::Run(flatlight::DaemonBesides(argv[0]), seconds, argc > 2 ? argv[2] : "out/soak.csv");
 }
