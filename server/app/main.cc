@@ -7,12 +7,15 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "core/execution/thread_pool.h"
 #include "server/app/options.h"
 #include "server/app/shutdown_signals.h"
+#include "server/app/spare_memory.h"
 #include "server/app/token.h"
 #include "server/service/build_version.h"
 #include "server/service/server.h"
@@ -82,10 +85,16 @@ int Run(const DaemonOptions& options) {
   if (!options.metrics.empty()) {
     std::fprintf(stderr, "flatlightd metrics at http://%s/metrics\n", (*server)->metrics_address().c_str());
   }
-  signals.Await(options.exit_with_parent, [&] {
+  const auto reopen_logs = [&] {
     const absl::Status reopened = (*server)->ReopenLogs();
     if (!reopened.ok()) Fail(reopened, kCannotServe);
-  });
+  };
+  const auto tidy = [cpu_seconds = 0.0]() mutable {
+    constexpr double kRestSeconds = 0.1;  // Of processor time since the last time.
+    const double now = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    GiveBackSpareMemory(now - std::exchange(cpu_seconds, now) < kRestSeconds);
+  };
+  signals.Await(options.exit_with_parent, reopen_logs, tidy);
   std::signal(SIGALRM, [](int) { _exit(0); });
   alarm(kHardStopSeconds);
   (*server)->Drain(kDrainGrace);

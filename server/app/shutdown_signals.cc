@@ -13,6 +13,8 @@
 namespace flatlight {
 namespace {
 
+constexpr int kTidyMilliseconds = 5000;
+
 // Whether standard input has come to its end; what it brought is thrown away.
 bool AtEnd() {
   std::array<char, 512> discarded;
@@ -34,7 +36,8 @@ ShutdownSignals::ShutdownSignals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void ShutdownSignals::Await(bool watch_stdin, const std::function<void()>& reload) const {
+void ShutdownSignals::Await(bool watch_stdin, const std::function<void()>& reload,
+                            const std::function<void()>& tidy) const {
   const int signal_fd = signalfd(-1, &signals_, SFD_CLOEXEC);
   if (signal_fd < 0) {
     std::perror("signalfd");
@@ -43,7 +46,9 @@ void ShutdownSignals::Await(bool watch_stdin, const std::function<void()>& reloa
   std::array<pollfd, 2> sources{pollfd{signal_fd, POLLIN, 0}, pollfd{STDIN_FILENO, POLLIN, 0}};
   const nfds_t count = watch_stdin ? 2 : 1;
   while (true) {
-    if (poll(sources.data(), count, -1) < 0) continue;
+    const int ready = poll(sources.data(), count, kTidyMilliseconds);
+    if (ready == 0) tidy();
+    if (ready <= 0) continue;
     if (sources[0].revents != 0) {
       signalfd_siginfo taken;
       if (read(signal_fd, &taken, sizeof(taken)) != sizeof(taken)) continue;

@@ -14,8 +14,8 @@ class ShutdownSignals {
   ShutdownSignals();
 
   // Returns at the first SIGTERM or SIGINT, or with `watch_stdin` at the end of standard input. From then on a signal
-  // ends the process at once. Until then, each SIGHUP calls `reload`.
-  void Await(bool watch_stdin, const std::function<void()>& reload) const;
+  // ends the process at once. Until then, each SIGHUP calls `reload`, and `tidy` is called about every 5 s.
+  void Await(bool watch_stdin, const std::function<void()>& reload, const std::function<void()>& tidy) const;
 
  private:
   sigset_t signals_;

@@ -63,13 +63,14 @@ void CpuLedger::TurnToToday() {
   }
 }
 
-void CpuLedger::Charge(const std::string& user, double seconds) {
+double CpuLedger::Charge(const std::string& user, double seconds) {
   const std::lock_guard lock(mutex_);
   TurnToToday();
-  used_[user] += seconds;
+  const double used = used_[user] += seconds;
   // Without storage too: the clock may go back to a day that was.
   unwritten_[{day_, user}] += seconds;
   if (storage_ == nullptr) unwritten_.erase(unwritten_.begin(), unwritten_.lower_bound({day_ - 1, ""}));
+  return used;
 }
 
 double CpuLedger::UsedToday(const std::string& user) {

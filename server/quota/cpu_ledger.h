@@ -35,7 +35,8 @@ class CpuLedger {
   // As Close.
   ~CpuLedger();
 
-  void Charge(const std::string& user, double seconds);
+  // Gives what UsedToday would say now.
+  double Charge(const std::string& user, double seconds);
   // What the user has had of the day that is. s.
   double UsedToday(const std::string& user);
   // The number of the day that is, since 1970.

@@ -76,7 +76,7 @@ void Scheduler::Resubmit(const JobRecord& job, JobRun::Restore restore, const Qu
     Owner& owner = owners_[run->spec->owner];
     ++owner.jobs;
     owner.quotas = quotas;
-    CheckDay(run->spec->owner);
+    if (options_.ledger != nullptr) CheckDay(run->spec->owner, options_.ledger->UsedToday(run->spec->owner));
     Enter(run, nullptr);
   }
   TellListener();

@@ -129,7 +129,8 @@ class Scheduler {
   bool IsSpent(const std::string& owner) const ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {
     return !spent_.empty() && spent_.count(owner) > 0;
   }
-  void CheckDay(const std::string& owner) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // `used` today, s. With a ledger.
+  void CheckDay(const std::string& owner, double used) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // In stage kReady, of a spent owner: says so, and lets go of those who wait for its values.
   void EnterRest(JobRun& run) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void LeaveRest(const std::function<bool(const std::string& owner)>& whose) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);

@@ -56,15 +56,14 @@ absl::Status Scheduler::CheckQuota(const std::string& owner, const Quotas& quota
 void Scheduler::Charge(const std::string& owner, double cpu_seconds) {
   accounts_.Charge(owner, cpu_seconds);
   if (options_.ledger == nullptr) return;
-  options_.ledger->Charge(owner, cpu_seconds);
-  CheckDay(owner);
+  CheckDay(owner, options_.ledger->Charge(owner, cpu_seconds));
 }
 
-void Scheduler::CheckDay(const std::string& owner) {
-  if (options_.ledger == nullptr || IsSpent(owner)) return;
+void Scheduler::CheckDay(const std::string& owner, double used) {
+  if (IsSpent(owner)) return;
   const auto entry = owners_.find(owner);
   if (entry == owners_.end() || !entry->second.quotas.cpu_seconds) return;
-  if (options_.ledger->UsedToday(owner) < *entry->second.quotas.cpu_seconds) return;
+  if (used < *entry->second.quotas.cpu_seconds) return;
   spent_.insert(owner);
   spent_day_ = options_.ledger->Today();
   std::vector<RunPtr> runs;

@@ -31,6 +31,7 @@ struct Backend {
   const std::string version;
   const Limits limits;
   const int threads;  // For rendering.
+  const std::uint32_t processors;
   const Guard guard;
   JobStore& jobs;
   SceneStore& scenes;

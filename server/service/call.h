@@ -85,12 +85,14 @@ template <class Request, class LaneOf, class Work>
 grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* context, const grpc::ByteBuffer* bytes,
                                  grpc::ByteBuffer* answer, LaneOf lane, Work work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  absl::StatusOr<Caller> caller = backend.guard.Authorize(*context, Request::descriptor()->name());
+  const std::string& request_name = Request::descriptor()->name();
+  absl::StatusOr<Caller> caller = backend.guard.Authorize(*context, request_name);
   if (!caller.ok()) {
     reactor->Finish(ToGrpcStatus(caller.status()));
     return reactor;
   }
-  backend.telemetry.NoteCaller(*context, caller->name);
+  const bool logged = backend.telemetry.LogsAll(request_name);
+  if (logged) backend.telemetry.NoteCaller(*context, caller->name);
   const auto lane_of = [&lane, &caller](const Request& request) {
     if constexpr (std::invocable<LaneOf, const Caller&, const Request&>) {
       return lane(*caller, request);
@@ -98,17 +100,21 @@ grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* 
       return lane(request);
     }
   };
-  const auto finish = [&backend, context, reactor, answer, work, caller = *caller,
+  const auto finish = [&backend, context, reactor, answer, work, logged, caller = *caller,
                        ticket = backend.calls.Enter()](const Request& request) {
     auto response = work(caller, request);
     if (response.ok()) *answer = ToBytes(*response);
-    if (const std::string grantee = GranteeOf(request); !grantee.empty()) {
-      backend.telemetry.NoteGrantee(*context, grantee);
+    const grpc::Status status = ToGrpcStatus(response.status());
+    if (logged || CallTelemetry::IsDenied(status)) {
+      backend.telemetry.NoteCaller(*context, caller.name);
+      if (const std::string grantee = GranteeOf(request); !grantee.empty()) {
+        backend.telemetry.NoteGrantee(*context, grantee);
+      }
+      if (const std::string name = ResourceOf(request, response); !name.empty()) {
+        backend.telemetry.NoteResource(*context, name);
+      }
     }
-    if (const std::string name = ResourceOf(request, response); !name.empty()) {
-      backend.telemetry.NoteResource(*context, name);
-    }
-    reactor->Finish(ToGrpcStatus(response.status()));
+    reactor->Finish(status);
   };
   const auto parse = [reactor, bytes](Request& request) {
     const absl::Status parsed = FromBytes(*bytes, request);

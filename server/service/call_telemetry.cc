@@ -38,16 +38,10 @@ std::string ReasonOrCode(const grpc::Status& status) {
   return absl::StatusCodeToString(static_cast<absl::StatusCode>(status.error_code()));
 }
 
-// Get, List, Watch, Explain, Validate: what only looks.
-bool OnlyLooks(std::string_view method) {
-  const std::string_view name = method.substr(method.rfind('/') + 1);
+// Get, List, Watch, Explain, Validate: what only looks. Of a request or a method.
+bool OnlyLooks(std::string_view name) {
   constexpr std::array<std::string_view, 5> kLooks = {"Get", "List", "Watch", "Explain", "Validate"};
   return std::any_of(kLooks.begin(), kLooks.end(), [&](std::string_view verb) { return name.starts_with(verb); });
-}
-
-bool IsDenied(const grpc::Status& status) {
-  return status.error_code() == grpc::StatusCode::UNAUTHENTICATED ||
-         status.error_code() == grpc::StatusCode::PERMISSION_DENIED;
 }
 
 class CallInterceptor final : public grpc::experimental::Interceptor {
@@ -131,6 +125,10 @@ CallTelemetry::Shard& CallTelemetry::ShardOf(const grpc::ServerContextBase* cont
   return shards_[(reinterpret_cast<std::uintptr_t>(context) >> 6) % shards_.size()];
 }
 
+bool CallTelemetry::LogsAll(std::string_view request) const {
+  return calls_ != nullptr || (audit_ != nullptr && !OnlyLooks(request));
+}
+
 void CallTelemetry::NoteCaller(const grpc::ServerContextBase& context, const std::string& caller) {
   if (!logs()) return;
   Shard& shard = ShardOf(&context);
@@ -172,7 +170,9 @@ void CallTelemetry::Ended(const grpc::ServerContextBase* context, const Call& ca
     const std::lock_guard lock(shard.mutex);
     if (auto node = shard.notes.extract(context)) notes = std::move(node.mapped());
   }
-  const bool changes = !OnlyLooks(call.method) && (!notes.resource.empty() || !call.status.ok());
+  const std::string_view method = call.method;
+  const bool changes =
+      !OnlyLooks(method.substr(method.rfind('/') + 1)) && (!notes.resource.empty() || !call.status.ok());
   const bool audited = audit_ != nullptr && (changes || IsDenied(call.status));
   if (!ours || (!audited && calls_ == nullptr)) return;
   JsonLog::Line line;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -28,6 +29,9 @@ class CallTelemetry {
   // The logs may be null. What is passed in must outlive the calls.
   CallTelemetry(Metrics& metrics, JsonLog* calls, JsonLog* audit, const std::vector<std::string>& services);
 
+  // Whether a call with a request of this name ("GetJobRequest") is logged whatever its answer; else it is if it is
+  // denied. What is noted of others costs time for nothing.
+  bool LogsAll(std::string_view request) const;
   // Who calls, and which job or scene it is about. While the call has no answer.
   void NoteCaller(const grpc::ServerContextBase& context, const std::string& caller);
   // Of a call that changes with whom something is shared.
@@ -50,6 +54,10 @@ class CallTelemetry {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
   bool logs() const { return calls_ != nullptr || audit_ != nullptr; }
+  static bool IsDenied(const grpc::Status& status) {
+    return status.error_code() == grpc::StatusCode::UNAUTHENTICATED ||
+           status.error_code() == grpc::StatusCode::PERMISSION_DENIED;
+  }
   void Ended(const grpc::ServerContextBase* context, const Call& call);
 
  private:

@@ -226,7 +226,7 @@ v1::GetCapabilitiesResponse GetCapabilities(Backend& backend, const Caller& call
   limits.set_max_watches(backend.limits.max_watches);
   response.set_threads(static_cast<std::uint32_t>(backend.threads));
   response.set_processor(ProcessorModel());
-  response.set_processors(UsableProcessors());
+  response.set_processors(backend.processors);
   *response.mutable_quotas() = QuotasToProto(backend, caller);
   for (std::size_t i = 0; i < kJobClasses; ++i) {
     v1::Retention& retention = *response.add_retention();

@@ -24,6 +24,7 @@
 #include "server/service/job_format.h"
 #include "server/service/job_sweeper.h"
 #include "server/service/listen_address.h"
+#include "server/service/machine.h"
 #include "server/service/render_calls.h"
 #include "server/service/render_service.h"
 #include "server/service/review_service.h"
@@ -138,6 +139,7 @@ struct Server::Parts {
         backend{.version = BuildVersion(),
                 .limits = options.limits,
                 .threads = pool.threads(),
+                .processors = UsableProcessors(),
                 .guard = Guard(options.token, std::move(users), quotas,
                                options.request_clock == nullptr ? clock : *options.request_clock),
                 .jobs = jobs,

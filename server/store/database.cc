@@ -3,6 +3,7 @@
 
 #include <sqlite3.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -165,6 +166,22 @@ absl::Status Database::Execute(const std::string& sql) {
   errno = 0;
   if (sqlite3_exec(database_.get(), sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK) return absl::OkStatus();
   return DatabaseError(database_.get(), path_);
+}
+
+std::optional<Database::LogHeader> Database::ReadLogHeader() {
+  constexpr int kRegionBytes = 32 << 10;  // As SQLite maps it.
+  sqlite3_file* file = nullptr;
+  if (sqlite3_file_control(database_.get(), "main", SQLITE_FCNTL_FILE_POINTER, &file) != SQLITE_OK || file == nullptr ||
+      file->pMethods == nullptr || file->pMethods->iVersion < 2) {
+    return std::nullopt;
+  }
+  void volatile* region = nullptr;
+  if (file->pMethods->xShmMap(file, 0, kRegionBytes, 0, &region) != SQLITE_OK || region == nullptr) return std::nullopt;
+  // Others may be writing it: what is torn equals neither what was nor what will be.
+  auto* words = const_cast<std::uint32_t*>(static_cast<std::uint32_t volatile*>(region));
+  LogHeader header;
+  for (std::size_t i = 0; i < header.size(); ++i) header[i] = std::atomic_ref(words[i]).load(std::memory_order_acquire);
+  return header;
 }
 
 std::int64_t Database::changed_rows() const { return sqlite3_changes64(database_.get()); }

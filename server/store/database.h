@@ -3,6 +3,7 @@
 #ifndef FLATLIGHT_SERVER_STORE_DATABASE_H_
 #define FLATLIGHT_SERVER_STORE_DATABASE_H_
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -67,6 +68,11 @@ class Database {
   Statement Prepare(const std::string& sql) { return {database_.get(), path_, sql}; }
   // One or more statements without parameters.
   absl::Status Execute(const std::string& sql);
+  // What connections tell each other through shared memory of what has been committed (the first header of the
+  // write-ahead log's index, https://sqlite.org/walformat.html): where it is as it was, SQLite too takes it that
+  // nothing was. Costs no system call. Absent where there is no such log.
+  using LogHeader = std::array<std::uint32_t, 12>;
+  std::optional<LogHeader> ReadLogHeader();
   // By the statement before.
   std::int64_t changed_rows() const;
 

@@ -191,6 +191,18 @@ ALTER TABLE jobs ADD COLUMN work_key TEXT;
 CREATE INDEX jobs_by_work ON jobs(work_key, number) WHERE work_key IS NOT NULL;
 )sql";
 
+// A number that is another after every change of users, whoever makes it: see UserDirectory.
+constexpr char kUsersVersion[] = R"sql(
+CREATE TABLE users_version(version INTEGER NOT NULL);
+INSERT INTO users_version VALUES(1);
+CREATE TRIGGER users_added AFTER INSERT ON users BEGIN UPDATE users_version SET version = version + 1; END;
+CREATE TRIGGER users_changed AFTER UPDATE ON users BEGIN UPDATE users_version SET version = version + 1; END;
+CREATE TRIGGER users_removed AFTER DELETE ON users BEGIN UPDATE users_version SET version = version + 1; END;
+CREATE TRIGGER members_added AFTER INSERT ON memberships BEGIN UPDATE users_version SET version = version + 1; END;
+CREATE TRIGGER members_changed AFTER UPDATE ON memberships BEGIN UPDATE users_version SET version = version + 1; END;
+CREATE TRIGGER members_removed AFTER DELETE ON memberships BEGIN UPDATE users_version SET version = version + 1; END;
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -203,7 +215,7 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 const std::vector<std::string>& Migrations() {
   static const std::vector<std::string> kMigrations = {kJobs,     kScenes,      kUsers,       kPauses, kGrants,
                                                        kRooms,    kSceneOwners, kJobsByOwner, kQuotas, kSceneGrants,
-                                                       kWebhooks, kRetention,   kDoneWork};
+                                                       kWebhooks, kRetention,   kDoneWork,    kUsersVersion};
   return kMigrations;
 }
 

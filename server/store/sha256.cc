@@ -9,30 +9,46 @@
 
 namespace flatlight {
 
-struct Sha256::Context {
+namespace {
+
+// EVP_sha256() would be looked up anew with every hash.
+const EVP_MD* Algorithm() {
+  static const EVP_MD* const kAlgorithm = EVP_MD_fetch(nullptr, "SHA256", nullptr);
+  return kAlgorithm;
+}
+
+struct Digest {
   EVP_MD_CTX* evp = EVP_MD_CTX_new();
-  Context() { EVP_DigestInit_ex(evp, EVP_sha256(), nullptr); }
-  ~Context() { EVP_MD_CTX_free(evp); }
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
+  Digest() { Begin(); }
+  ~Digest() { EVP_MD_CTX_free(evp); }
+  void Begin() { EVP_DigestInit_ex(evp, Algorithm(), nullptr); }
+  std::string Finish() {
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned int size = 0;
+    EVP_DigestFinal_ex(evp, digest, &size);
+    return absl::BytesToHexString({reinterpret_cast<const char*>(digest), size});
+  }
+  Digest(const Digest&) = delete;
+  Digest& operator=(const Digest&) = delete;
 };
+
+}  // namespace
+
+struct Sha256::Context : Digest {};
 
 Sha256::Sha256() : context_(std::make_unique<Context>()) {}
 Sha256::~Sha256() = default;
 
 void Sha256::Add(std::string_view bytes) { EVP_DigestUpdate(context_->evp, bytes.data(), bytes.size()); }
 
-std::string Sha256::Finish() {
-  unsigned char digest[EVP_MAX_MD_SIZE];
-  unsigned int size = 0;
-  EVP_DigestFinal_ex(context_->evp, digest, &size);
-  return absl::BytesToHexString({reinterpret_cast<const char*>(digest), size});
-}
+std::string Sha256::Finish() { return context_->Finish(); }
 
 std::string Sha256Of(std::string_view bytes) {
-  Sha256 sha;
-  sha.Add(bytes);
-  return sha.Finish();
+  // With every call of a user: to make a context costs more than to hash a token.
+  thread_local Digest context;
+  context.Begin();
+  EVP_DigestUpdate(context.evp, bytes.data(), bytes.size());
+  return context.Finish();
 }
 
 bool IsSha256(std::string_view text) {

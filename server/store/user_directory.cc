@@ -5,20 +5,25 @@
 
 namespace flatlight {
 
-// The number changes when another connection has committed; to ask for it costs a few microseconds.
 UserDirectory::UserDirectory(std::unique_ptr<Database> database)
-    : database_(std::move(database)), version_query_(database_->Prepare("PRAGMA data_version")) {}
+    : database_(std::move(database)), version_query_(database_->Prepare("SELECT version FROM users_version")) {}
+
+absl::StatusOr<std::int64_t> UserDirectory::ReadVersion() {
+  const auto row = version_query_.Step();
+  const std::int64_t version = row.ok() && *row ? version_query_.Integer(0) : 0;
+  version_query_.Reset();
+  if (!row.ok()) return row.status();
+  return version;
+}
 
 absl::Status UserDirectory::ForgetWhatChanged() {
-  const auto row = version_query_.Step();
-  if (!row.ok()) {
-    version_query_.Reset();
-    return row.status();
-  }
-  const std::int64_t version = version_query_.Integer(0);
-  version_query_.Reset();
-  if (version == version_) return absl::OkStatus();
-  version_ = version;
+  const auto header = database_->ReadLogHeader();
+  if (header && header == seen_) return absl::OkStatus();
+  const auto version = ReadVersion();
+  if (!version.ok()) return version.status();
+  seen_ = header;
+  if (*version == version_) return absl::OkStatus();
+  version_ = *version;
   by_token_hash_.clear();
   if (has_users_ == false) has_users_.reset();
   return absl::OkStatus();

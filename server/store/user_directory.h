@@ -16,8 +16,8 @@
 
 namespace flatlight {
 
-// The users as every call asks for them. What was found is remembered until anything in the database is changed, which
-// is seen at once, whichever process did it. Safe to use from any thread.
+// The users as every call asks for them. What was found is remembered until any user is changed, which is seen at once,
+// whichever process did it. Safe to use from any thread.
 class UserDirectory {
  public:
   // A connection for this alone, which never writes.
@@ -29,7 +29,7 @@ class UserDirectory {
   absl::StatusOr<User> FindByTokenHash(const std::string& token_sha256);
   // As UserStore::FindRole; not remembered.
   absl::StatusOr<std::optional<Role>> FindRole(const std::string& name);
-  // Another number whenever anything in the database may have been changed, and when it cannot be read.
+  // Another number whenever any user may have been changed, and when that cannot be told.
   std::int64_t Version();
 
  private:
@@ -37,10 +37,12 @@ class UserDirectory {
   static constexpr std::size_t kMostRemembered = 4096;
 
   absl::Status ForgetWhatChanged() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  absl::StatusOr<std::int64_t> ReadVersion() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   std::mutex mutex_;
   const std::unique_ptr<Database> database_ ABSL_PT_GUARDED_BY(mutex_);
   Statement version_query_ ABSL_GUARDED_BY(mutex_);
+  std::optional<Database::LogHeader> seen_ ABSL_GUARDED_BY(mutex_);  // Before the version was read.
   std::int64_t version_ ABSL_GUARDED_BY(mutex_) = -1;
   std::int64_t unreadable_ ABSL_GUARDED_BY(mutex_) = -1;
   std::optional<bool> has_users_ ABSL_GUARDED_BY(mutex_);

@@ -48,6 +48,7 @@ class BenchDaemon {
   // SIGKILL, and waits until it is gone.
   void Kill();
   pid_t pid() const { return pid_; }
+  const std::string& address() const { return address_; }  // "unix:PATH".
   // A connection that shares nothing with others, and tries again soon.
   std::shared_ptr<grpc::Channel> Connect() const;
   v1::RenderService::Stub& render() { return *render_; }

@@ -6,7 +6,7 @@
 // A flatlightd with a data folder and users, and a server of this program that answers the same message with an empty
 // one, without interceptors, tokens or work: both on Unix sockets, asked in turns by the same connections and with the
 // same number of calls under way. Callers and servers share the machine's processors. Every answer's status is checked.
-#include <unistd.h>
+#include <sys/types.h>
 
 #include <atomic>
 #include <chrono>
@@ -19,10 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "grpcpp/server.h"
-#include "grpcpp/server_builder.h"
 #include "tests/bench/bench_daemon.h"
 #include "tests/bench/bench_report.h"
+#include "tests/bench/call_peers.h"
 
 namespace flatlight {
 namespace {
@@ -33,44 +32,14 @@ constexpr int kChannels = 4;
 constexpr int kUnderWay = 16;  // Of each channel.
 constexpr int kTurns = 15;
 constexpr std::chrono::milliseconds kTurn{500};
-constexpr double kGoal = 70;  // % of the empty call's rate.
-
-class Echo final : public v1::ServerService::CallbackService {
-  grpc::ServerUnaryReactor* GetCapabilities(grpc::CallbackServerContext* context, const v1::GetCapabilitiesRequest*,
-                                            v1::GetCapabilitiesResponse*) override {
-    grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-    reactor->Finish(grpc::Status::OK);
-    return reactor;
-  }
-};
-
-int ServeEcho(const std::string& address) {
-  Echo echo;
-  grpc::ServerBuilder builder;
-  builder.AddListeningPort(address, grpc::InsecureServerCredentials());
-  builder.RegisterService(&echo);
-  const auto server = builder.BuildAndStart();
-  if (server == nullptr) return 1;
-  for (char discarded; read(STDIN_FILENO, &discarded, 1) > 0;) continue;
-  server->Shutdown(std::chrono::system_clock::now());
-  return 0;
-}
+constexpr int kRequests = 1'000'000;  // A second: asked about with every call, never reached.
+constexpr double kGoal = 70;          // % of the empty call's rate.
 
 double CpuSecondsOf(pid_t process) {
   clockid_t clock;
   timespec time{};
   if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &time) != 0) Die("no clock of a server");
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-// The first token of `flatlightd user add`.
-std::string AddUser(const std::string& program, const std::string& data) {
-  std::FILE* const output = popen((program + " user add --data " + data + " ada").c_str(), "r");
-  std::string text;
-  for (int c = std::getc(output); c != EOF; c = std::getc(output)) text += static_cast<char>(c);
-  const std::size_t comma = text.rfind(',');
-  if (pclose(output) != 0 || comma == std::string::npos) Die("cannot add a user");
-  return text.substr(comma + 1, text.find_last_not_of('\n') - comma);
 }
 
 using Done = std::function<void(const grpc::Status&)>;
@@ -141,14 +110,11 @@ void Measure(Kind& kind) {
 }
 
 int Run(const std::string& self, const std::string& csv) {
-  const std::string program = DaemonBesides(self);
-  const TemporaryFolder folder;
-  const TemporaryFolder echo_folder;
-  const std::string data = folder.path() + "/data";
-  const std::string token = "Bearer " + AddUser(program, data);
-  BenchDaemon echo("/proc/self/exe", echo_folder.path());
-  // A limit that is asked about with every call and never reached.
-  BenchDaemon daemon(program, folder.path(), {"--data", data, "--quota", "student.requests=1000000"});
+  CallPeers peers(self, kRequests);
+  const BenchDaemon& echo = peers.echo();
+  const BenchDaemon& daemon = peers.daemon();
+  const std::string& token = peers.authorization();
+  const std::string job = peers.EndedJob();
 
   std::vector<std::unique_ptr<v1::ServerService::Stub>> echo_stubs;
   std::vector<std::unique_ptr<v1::ServerService::Stub>> server_stubs;
@@ -158,17 +124,6 @@ int Run(const std::string& self, const std::string& csv) {
     const auto channel = daemon.Connect();
     server_stubs.push_back(v1::ServerService::NewStub(channel));
     render_stubs.push_back(v1::RenderService::NewStub(channel));
-  }
-  std::string job;
-  {
-    CallContext context;
-    context.AddMetadata("authorization", token);
-    v1::Job made;
-    const grpc::Status created = render_stubs[0]->CreateJob(
-        &context, RequestFromJson(R"({"scene": {"name": "scenes/unit-light"}, "settings": {"method": "EXACT"}})"),
-        &made);
-    if (!created.ok()) Die("CreateJob: " + created.error_message());
-    job = made.name();
   }
   const auto capabilities = [&](const auto& stubs, const std::string& authorization) {
     return [&stubs, authorization](int channel, Done done) {
@@ -221,7 +176,6 @@ int Run(const std::string& self, const std::string& csv) {
 }  // namespace flatlight
 
 int main(int argc, char** argv) {
-  // As BenchDaemon starts a server.
-  if (argc > 2 && std::string(argv[1]) == "--listen") return flatlight::ServeEcho(argv[2]);
+  if (const int status = flatlight::MaybeServeEcho(argc, argv); status >= 0) return status;
   return flatlight::Run(argv[0], argc > 1 ? argv[1] : "out/calls.csv");
 }

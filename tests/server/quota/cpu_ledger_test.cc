@@ -40,9 +40,9 @@ class CpuLedgerTest : public ::testing::Test {
 };
 
 TEST_F(CpuLedgerTest, SumsUpByUserAndDay) {
-  ledger_->Charge("ada", 1.5);
-  ledger_->Charge("ada", 2);
-  ledger_->Charge("bob", 4);
+  EXPECT_EQ(ledger_->Charge("ada", 1.5), 1.5);
+  EXPECT_EQ(ledger_->Charge("ada", 2), 3.5);
+  EXPECT_EQ(ledger_->Charge("bob", 4), 4);
   EXPECT_EQ(ledger_->UsedToday("ada"), 3.5);
   EXPECT_EQ(ledger_->UsedToday("bob"), 4);
   EXPECT_EQ(ledger_->UsedToday("eve"), 0);

@@ -61,5 +61,37 @@ TEST_F(UserDirectoryTest, ChangesByOthersAreSeenAtOnce) {
   EXPECT_TRUE(*directory_->HasUsers()) << "revoking the last user opens nothing";
 }
 
+TEST_F(UserDirectoryTest, TheVersionIsThatOfUsersAlone) {
+  std::int64_t version = directory_->Version();
+  const auto expect_change = [&](bool changed, const std::string& sql) {
+    ASSERT_THAT(other_->Execute(sql), IsOk());
+    const std::int64_t now = directory_->Version();
+    EXPECT_EQ(now != version, changed) << sql;
+    version = now;
+  };
+  expect_change(false, "INSERT INTO cpu_days VALUES('ada', 1, 2)");
+  expect_change(true, "INSERT INTO users VALUES('ada', 'student', 'hash')");
+  expect_change(true, "INSERT INTO memberships VALUES('ada', 'lab')");
+  expect_change(false, "UPDATE cpu_days SET seconds = 3");
+  expect_change(true, "UPDATE users SET role = 'grader'");
+  expect_change(true, "UPDATE memberships SET group_name = 'lab-2'");
+  expect_change(true, "DELETE FROM memberships");
+  expect_change(true, "DELETE FROM users");
+}
+
+TEST_F(UserDirectoryTest, TheLogsHeaderChangesWithEveryCommitOfOthers) {
+  const auto mine = *Database::OpenExisting(other_->path());
+  ASSERT_TRUE(*mine->Prepare("SELECT 1 FROM users_version").Step());
+  const auto before = mine->ReadLogHeader();
+  ASSERT_TRUE(before.has_value());
+  EXPECT_EQ(mine->ReadLogHeader(), before);
+  Transaction transaction(*other_);
+  ASSERT_THAT(transaction.Begin(), IsOk());
+  ASSERT_THAT(other_->Execute("INSERT INTO cpu_days VALUES('ada', 1, 2)"), IsOk());
+  EXPECT_EQ(mine->ReadLogHeader(), before) << "it is not committed";
+  ASSERT_THAT(transaction.Commit(), IsOk());
+  EXPECT_NE(mine->ReadLogHeader(), before);
+}
+
 }  // namespace
 }  // namespace flatlight
