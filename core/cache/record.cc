@@ -49,7 +49,8 @@ double CacheRecord::ErrorOfStretch(double place) const {
   const double distance = std::abs(place - at), smooth = SmoothError(distance);
   if (!goes_on || distance == 0) return smooth;
   const double infinity = std::numeric_limits<double>::infinity(), most = place > at ? EventToRight() : EventToLeft();
-  const std::span<const VisibilityEvent> side = place > at ? EventsIn(events, at, infinity) : EventsIn(events, -infinity, at);
+  const std::span<const VisibilityEvent> side =
+      place > at ? EventsIn(events, at, infinity) : EventsIn(events, -infinity, at);
   double error = smooth;
   // To the right, or to the left; those up to the place and one more.
   const auto hold = [&](const VisibilityEvent& event) {
@@ -97,8 +98,7 @@ Spectrum Extrapolate(const CacheRecord& record, double place, std::size_t degree
   Spectrum sum = record.derivative[degree];
   for (std::size_t k = degree; k-- > 0;) sum = record.derivative[k] + (distance / static_cast<double>(k + 1)) * sum;
   const double sign = place < record.at ? -1 : 1;
-  for (const VisibilityEvent& event :
-       EventsIn(record.events, std::min(record.at, place), std::max(record.at, place)))
+  for (const VisibilityEvent& event : EventsIn(record.events, std::min(record.at, place), std::max(record.at, place)))
     if (record.Passes(event)) sum = sum + sign * event.Change(place - event.at);
   return sum;
 }

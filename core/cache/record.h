@@ -45,8 +45,8 @@ struct CacheRecord {
   // The events of its track, in order; none if error control does not ask for them. They must outlive this.
   std::span<const VisibilityEvent> events;
   // Set by SetErrors: the estimated error of extrapolation over a distance d is the sum of growth[k] d^k, beyond an
-  // event with what is not known of its jumps, relative to `scale`. If `goes_on`, the last two are terms of a series and the rest of
-  // it is estimated from them.
+  // event with what is not known of its jumps, relative to `scale`. If `goes_on`, the last two are terms of a series
+  // and the rest of it is estimated from them.
   std::array<double, kRecordOrders> growth{};
   bool goes_on = false;
   double scale = 0;

@@ -108,8 +108,7 @@ double RecordPair::SmoothErrorAt(double fraction) const {
 
 double RecordPair::ErrorAt(double place) const {
   // No more is known than what extrapolates.
-  if (changes_ == 0)
-    return std::min(left_.scale * left_.ErrorAt(place), right_.scale * right_.ErrorAt(place));
+  if (changes_ == 0) return std::min(left_.scale * left_.ErrorAt(place), right_.scale * right_.ErrorAt(place));
   double error = SmoothErrorAt(Fraction(place));
   for (const Doubt& doubt : doubts_) {
     const double share =

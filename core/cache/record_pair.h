@@ -53,7 +53,7 @@ class RecordPair {
   const CacheRecord& right_;
   std::size_t degree_;
   double width_;
-  std::vector<Jump> jumps_;                            // In order.
+  std::vector<Jump> jumps_;                           // In order.
   std::array<Spectrum, kRecordOrders> smooth_right_;  // The right record's derivatives without them.
   // Derivative degree + 1 + k changes the polynomial at fraction t by at most change_[k] (t (1 - t))^(degree + 1 + k).
   std::array<double, 2> change_{};

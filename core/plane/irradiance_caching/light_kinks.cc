@@ -46,8 +46,8 @@ LightKinks::LightKinks(std::size_t elements, const PanelMesh& mesh, const PanelL
     for (std::size_t c = 0; c < light.channels(); ++c) {
       const Bend left = BendAt(light.Of(i - 1, c), light.coefficients(), width_before, true);
       const Bend right = BendAt(light.Of(i, c), light.coefficients(), width, false);
-      change = std::max(change, std::abs(right[0] - left[0]) + near * (std::abs(right[1] - left[1]) +
-                                                                       0.5 * near * std::abs(right[2] - left[2])));
+      change = std::max(change, std::abs(right[0] - left[0]) +
+                                    near * (std::abs(right[1] - left[1]) + 0.5 * near * std::abs(right[2] - left[2])));
     }
     if (change > kLeast * brightest) places_[PanelMesh::IndexOf(panel.element, panel.side)].push_back(panel.low);
   }

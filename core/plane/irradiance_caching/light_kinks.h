@@ -11,9 +11,9 @@
 
 namespace flatlight {
 
-// Places on curves at which the light that they reflect jumps, or its slope or bend: ends of panels whose polynomials do
-// not go on into one another, as at a visibility event of the curve itself. Where the edge of something nearer passes
-// before such a place, a derivative of irradiance jumps.
+// Places on curves at which the light that they reflect jumps, or its slope or bend: ends of panels whose polynomials
+// do not go on into one another, as at a visibility event of the curve itself. Where the edge of something nearer
+// passes before such a place, a derivative of irradiance jumps.
 class LightKinks {
  public:
   // `elements`: their number.

@@ -141,16 +141,16 @@ std::vector<Part> Polynomials(std::size_t degree, const std::vector<double>& eve
   for (std::size_t i = 0; i <= events.size(); ++i) {
     std::vector<double> factors;
     for (std::size_t power = 0; power <= 2 * degree + 1; ++power)
-      factors.push_back(power < kRecordOrders ? std::cos(1 + 3 * static_cast<double>(i) + 7 * static_cast<double>(power))
-                                              : 0.3);
+      factors.push_back(
+          power < kRecordOrders ? std::cos(1 + 3 * static_cast<double>(i) + 7 * static_cast<double>(power)) : 0.3);
     parts.push_back({i == 0 ? -10 : events[i - 1], PolynomialOf(factors)});
   }
   return parts;
 }
 
 TEST(RecordPairTest, PolynomialsThatJumpAtKnownEventsAreExact) {
-  const std::vector<std::vector<double>> cases = {
-      {0.3}, {0.3, 0.5}, {0.3, 0.3, 0.7}, {-0.5}, {1}, {-1, 0.2, 2}, {0.2, 1}, {-0.5, -0.5, 1, 1}};
+  const std::vector<std::vector<double>> cases = {{0.3}, {0.3, 0.5},   {0.3, 0.3, 0.7}, {-0.5},
+                                                  {1},   {-1, 0.2, 2}, {0.2, 1},        {-0.5, -0.5, 1, 1}};
   for (const std::size_t degree : {0u, 1u, 2u}) {
     for (const std::vector<double>& places : cases) {
       const std::vector<Part> parts = Polynomials(degree, places);
@@ -174,11 +174,10 @@ TEST(RecordPairTest, EstimatesHoldAcrossEvents) {
     for (const double height : {1.0, 0.5, 0.2, 0.05}) {
       const Function edge = [&](double x) {
         const double a = height, r = 1 / (a * a + x * x), r3 = r * r * r;
-        return std::array<double, kRecordOrders>{a * a * (r - 1 / (a * a)), -2 * a * a * x * r * r,
-                                                 a * a * (6 * x * x - 2 * a * a) * r3,
-                                                 24 * a * a * x * (a * a - x * x) * r3 * r,
-                                                 24 * a * a * (5 * x * x * x * x - 10 * a * a * x * x + a * a * a * a) *
-                                                     r3 * r * r};
+        return std::array<double, kRecordOrders>{
+            a * a * (r - 1 / (a * a)), -2 * a * a * x * r * r, a * a * (6 * x * x - 2 * a * a) * r3,
+            24 * a * a * x * (a * a - x * x) * r3 * r,
+            24 * a * a * (5 * x * x * x * x - 10 * a * a * x * x + a * a * a * a) * r3 * r * r};
       };
       const Function wave = [](double x) {
         return std::array<double, kRecordOrders>{2 + std::sin(x), std::cos(x), -std::sin(x), -std::cos(x), std::sin(x)};
