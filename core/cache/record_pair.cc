@@ -47,21 +47,19 @@ bool RecordPair::Joins(const CacheRecord& left, const CacheRecord& right) {
 RecordPair::RecordPair(const CacheRecord& left, const CacheRecord& right, std::size_t degree)
     : left_(left), right_(right), degree_(degree), width_(right.at - left.at) {
   FLATLIGHT_DCHECK(degree < left.known && degree < right.known);
-  smooth_right_ = right.derivative;
-  for (const VisibilityEvent& event : EventsIn(left.events, left.at, right.at)) {
-    const double beyond = right.at - event.at;
-    const Jump& jump = jumps_.emplace_back(Jump{&event, event.OrdersOver(beyond)});
-    for (std::size_t k = 0; k < jump.orders; ++k)
-      smooth_right_[k] = smooth_right_[k] - event.Derivative(k, beyond, jump.orders);
-  }
-  const std::size_t known = std::min(left.known, right.known);
-  for (std::size_t order = degree + 1; order < known && changes_ < change_.size(); ++order) {
-    // What one more derivative changes is (t (1 - t))^order times a linear function.
-    double over = 1;
-    for (std::size_t k = 0; k < order; ++k) over *= 16.0 / 3;
-    const auto linear = [&](double t) { return over * (Polynomial(order, t) - Polynomial(order - 1, t)); };
-    const Spectrum first = linear(0.25), last = linear(0.75);
-    change_[changes_++] = std::max((1.5 * first - 0.5 * last).MaxSize(), (1.5 * last - 0.5 * first).MaxSize());
+  for (const VisibilityEvent& event : EventsIn(left.events, left.at, right.at))
+    jumps_.push_back({&event, kRecordOrders});
+  Smooth();
+  for (Jump& jump : jumps_) {
+    // Where its terms grow, the last of them may do more harm than good.
+    const std::size_t orders = jump.event->OrdersOver(right.at - jump.event->at);
+    if (orders == kRecordOrders) continue;
+    const double with_all = SmoothErrorAt(0.5);
+    jump.orders = orders;
+    Smooth();
+    if (SmoothErrorAt(0.5) < with_all) continue;
+    jump.orders = kRecordOrders;
+    Smooth();
   }
   if (changes_ == 0) return;
   for (const Jump& jump : jumps_) {
@@ -92,6 +90,25 @@ Spectrum RecordPair::At(double place) const {
     sum = sum + jump.event->Derivative(0, place - jump.event->at, jump.orders);
   }
   return sum;
+}
+
+void RecordPair::Smooth() {
+  smooth_right_ = right_.derivative;
+  for (const Jump& jump : jumps_) {
+    const double beyond = right_.at - jump.event->at;
+    for (std::size_t k = 0; k < jump.orders; ++k)
+      smooth_right_[k] = smooth_right_[k] - jump.event->Derivative(k, beyond, jump.orders);
+  }
+  changes_ = 0;
+  const std::size_t known = std::min(left_.known, right_.known);
+  for (std::size_t order = degree_ + 1; order < known && changes_ < change_.size(); ++order) {
+    // What one more derivative changes is (t (1 - t))^order times a linear function.
+    double over = 1;
+    for (std::size_t k = 0; k < order; ++k) over *= 16.0 / 3;
+    const auto linear = [&](double t) { return over * (Polynomial(order, t) - Polynomial(order - 1, t)); };
+    const Spectrum first = linear(0.25), last = linear(0.75);
+    change_[changes_++] = std::max((1.5 * first - 0.5 * last).MaxSize(), (1.5 * last - 0.5 * first).MaxSize());
+  }
 }
 
 double RecordPair::LeftShare(double place) const { return EndWeights(degree_, Fraction(place))[0]; }

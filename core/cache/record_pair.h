@@ -45,6 +45,8 @@ class RecordPair {
   };
 
   double Fraction(double place) const { return (place - left_.at) / width_; }
+  // Takes jumps off the right record and estimates what that leaves.
+  void Smooth();
   double SmoothErrorAt(double fraction) const;
   // Of the smooth rest, with so many derivatives.
   Spectrum Polynomial(std::size_t degree, double fraction) const;

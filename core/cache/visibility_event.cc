@@ -48,8 +48,8 @@ double VisibilityEvent::Rest(double distance) const {
   const std::array<double, kRecordOrders> terms = TermsOf(*this, distance);
   const std::size_t orders = OrdersOver(distance);
   if (orders < kRecordOrders) return terms[orders] / (1 - kMostRatio);
-  const double before = terms[kRecordOrders - 2], last = terms[kRecordOrders - 1];
-  const double ratio = last < kMostRatio * before ? last / before : kMostRatio;
+  const double last = terms[kRecordOrders - 1], one_before = terms[kRecordOrders - 2];
+  const double ratio = last < kMostRatio * one_before ? last / one_before : kMostRatio;
   return last * ratio / (1 - ratio);
 }
 

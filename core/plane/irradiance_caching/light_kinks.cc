@@ -12,6 +12,10 @@ namespace {
 // differ by less.
 constexpr double kLeast = 1e-4;
 
+// So near to a kink an end of what is seen is not beyond it: where a curve stands on another one it stays there, to
+// rounding.
+constexpr double kSame = 1e-9;
+
 // Value, slope and second derivative by the number of the chart.
 using Bend = std::array<double, 3>;
 
@@ -55,7 +59,7 @@ LightKinks::LightKinks(std::size_t elements, const PanelMesh& mesh, const PanelL
 
 std::size_t LightKinks::Below(ElementId element, Side side, double u) const {
   const std::vector<double>& places = places_[PanelMesh::IndexOf(element, side)];
-  return static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), u) - places.begin());
+  return static_cast<std::size_t>(std::lower_bound(places.begin(), places.end(), u - kSame) - places.begin());
 }
 
 }  // namespace flatlight
