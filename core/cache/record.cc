@@ -56,7 +56,9 @@ double CacheRecord::ErrorOfStretch(double place) const {
   const auto hold = [&](const VisibilityEvent& event) {
     const double range = std::abs(event.at - at);
     if (range > most) return false;
-    if (event.before && range > 0) {
+    // Of those in one place the last one tells what is right of it.
+    const bool last = &event == &events.back() || (&event + 1)->at > event.at;
+    if (event.before && last && range > 0) {
       const Spectrum truth = place > at && !Passes(event) ? *event.before : *event.before + event.jump[0];
       const double off = (Extrapolate(*this, event.at, degree) - truth).MaxSize();
       // Else something happens on the way that no event tells, as where a shadow's edge on another curve comes into

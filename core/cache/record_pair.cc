@@ -62,8 +62,10 @@ RecordPair::RecordPair(const CacheRecord& left, const CacheRecord& right, std::s
     Smooth();
   }
   if (changes_ == 0) return;
-  for (const Jump& jump : jumps_) {
-    const VisibilityEvent& event = *jump.event;
+  for (std::size_t i = 0; i < jumps_.size(); ++i) {
+    const VisibilityEvent& event = *jumps_[i].event;
+    // Of those in one place the last one tells what is right of it.
+    if (i + 1 < jumps_.size() && jumps_[i + 1].event->at == event.at) continue;
     if (!event.before || event.at >= right.at) continue;
     const double off = (At(event.at) - *event.before - event.jump[0]).MaxSize();
     // Something that no event tells.
