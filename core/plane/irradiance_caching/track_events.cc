@@ -14,15 +14,17 @@ constexpr double kPrecision = 0x1p-40;
 // Events so near to each other count as one.
 constexpr double kTogether = 1e-5;
 constexpr int kMostBetween = 64;
-// Of the irradiance: more no term of a series changes it by to the next place, if it is of use.
+// Of the irradiance, and of what its slope adds: more no term of a series changes it by to the next place, if it is of
+// use.
 constexpr double kMostTerm = 1;
 
 // Whether the series of what jumps tells what lies beyond as far as to the next place. In a corner it does not.
+// `irradiance`: beside the event; where light begins it is none yet.
 bool IsOfUse(const std::array<Spectrum, kRecordOrders>& jump, double irradiance, double distance) {
+  const double most = kMostTerm * (irradiance + distance * jump[1].MaxSize());
   double power = 1;
   for (std::size_t k = 0; k < kRecordOrders; ++k) {
-    const double term = power * jump[k].MaxSize();
-    if (!(term <= kMostTerm * irradiance)) return false;
+    if (!(power * jump[k].MaxSize() <= most)) return false;
     power *= distance / static_cast<double>(k + 1);
   }
   return true;
