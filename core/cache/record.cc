@@ -49,30 +49,27 @@ double CacheRecord::ErrorOfStretch(double place) const {
   const double distance = std::abs(place - at), smooth = SmoothError(distance);
   if (!goes_on || distance == 0) return smooth;
   const double infinity = std::numeric_limits<double>::infinity(), most = place > at ? EventToRight() : EventToLeft();
-  const std::span<const VisibilityEvent> side =
-      place > at ? EventsIn(events, at, infinity) : EventsIn(events, -infinity, at);
   double error = smooth;
-  // To the right, or to the left; those up to the place and one more.
   const auto hold = [&](const VisibilityEvent& event) {
     const double range = std::abs(event.at - at);
-    if (range > most) return false;
     // Of those in one place the last one tells what is right of it.
     const bool last = &event == &events.back() || (&event + 1)->at > event.at;
-    if (event.before && last && range > 0) {
-      const Spectrum truth = place > at && !Passes(event) ? *event.before : *event.before + event.jump[0];
-      const double off = (Extrapolate(*this, event.at, degree) - truth).MaxSize();
-      // Else something happens on the way that no event tells, as where a shadow's edge on another curve comes into
-      // sight.
-      if (!(off <= kAsExpected * SmoothError(range) * scale)) {
-        error = scale > 0 ? std::max(error, std::min(distance / range, 1.0) * off / scale) : infinity;
-      }
-    }
-    return range < distance;
+    if (!event.before || !last || range == 0 || range > most) return;
+    const Spectrum truth = place > at && !Passes(event) ? *event.before : *event.before + event.jump[0];
+    const double off = (Extrapolate(*this, event.at, degree) - truth).MaxSize();
+    if (off <= kAsExpected * SmoothError(range) * scale) return;
+    // Something happens on the way that no event tells, as where a shadow's edge on another curve comes into sight.
+    error = scale > 0 ? std::max(error, std::min(distance / range, 1.0) * off / scale) : infinity;
   };
+  // The next one on that side, and of those on the way the farthest.
   if (place > at) {
-    for (auto event = side.begin(); event != side.end() && hold(*event);) ++event;
+    const std::span<const VisibilityEvent> side = EventsIn(events, at, infinity), passed = EventsIn(events, at, place);
+    if (!side.empty()) hold(side.front());
+    if (passed.size() > 1) hold(passed.back());
   } else {
-    for (auto event = side.rbegin(); event != side.rend() && hold(*event);) ++event;
+    const std::span<const VisibilityEvent> side = EventsIn(events, -infinity, at), passed = EventsIn(events, place, at);
+    if (!side.empty()) hold(side.back());
+    if (passed.size() > 1) hold(passed.front());
   }
   return error;
 }

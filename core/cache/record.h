@@ -75,8 +75,8 @@ struct CacheRecord {
   bool Passes(const VisibilityEvent& event) const { return event.known && unknown_jump == 0; }
   // As if there were no events.
   double SmoothError(double distance) const;
-  // The same, with what known jumps leave open, and at least what it takes to be off at the events up to there and the
-  // next one as it is seen to be there.
+  // The same, and at least what it takes to be off at the next event on that side, and at the farthest one on the way,
+  // as it is seen to be there.
   double ErrorOfStretch(double place) const;
   double ErrorAt(double place) const;
   // The error that counts.
