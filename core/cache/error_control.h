@@ -22,7 +22,7 @@ enum class ErrorControl : std::uint8_t {
   // or with what is covered and uncovered (Schwarzhaupt et al. 2012), at least 1 % of what its terms add up to without
   // their signs; of the surroundings alone where it is dark.
   kOcclusionHessian,
-  // The next two derivatives beyond those that extrapolate, and what jumps at the next visibility event.
+  // The next two derivatives beyond those that extrapolate, and what is not known of jumps at visibility events.
   kVisibilityEvents,
 };
 

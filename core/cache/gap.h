@@ -18,7 +18,8 @@ struct TrackCorners {
   bool low = false, high = false;
 };
 
-// Up to the next event a record vouches for what lies beside it; beyond there is a stretch of its own.
+// A record vouches for what lies beside it, over events whose jumps are known, up to the next one where they are not;
+// beyond there is a stretch of its own.
 struct Gap {
   static constexpr double kFarOff = 1e50;  // Of errors: as good as infinite, and its square is none.
 
@@ -26,8 +27,8 @@ struct Gap {
   const CacheRecord* after = nullptr;   // and from the right; null if none does.
   double low = 0, high = 0;
   std::span<const double> points;  // Wanted in it, in order.
-  // The largest estimate at these points: of both records together where they are joined (RecordPair), else by the
-  // better of the nearest records.
+  // The largest estimate at these points: of both records together where they are joined (RecordPair), with what that
+  // leaves of the jumps between, else by the better of the nearest records.
   double error = 0;
   double squares = 0;  // Sum of the squares of these.
   // Records put in will be joined with each other and with those at hand.

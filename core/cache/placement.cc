@@ -95,7 +95,9 @@ std::vector<Gap> Placement::Stretches(std::uint32_t track) const {
   };
   if (track < events_.size()) {
     for (const VisibilityEvent& event : events_[track])
-      add(static_cast<std::size_t>(std::lower_bound(points.begin(), points.end(), event.at) - points.begin()));
+      // Records are joined across the others.
+      if (!event.known)
+        add(static_cast<std::size_t>(std::lower_bound(points.begin(), points.end(), event.at) - points.begin()));
   }
   add(points.size());
   return stretches;

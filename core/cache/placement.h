@@ -49,7 +49,8 @@ class Placement {
   Placement(std::vector<std::vector<double>> points, const PlacementOptions& options);
 
   // By track, in order, if they are known before there are records; they must outlive this. The first wave of a budget
-  // then leaves no stretch between them without a record, if that takes no more than two thirds of it.
+  // then leaves no stretch between those whose jumps are not known without a record, if that takes no more than two
+  // thirds of it.
   void SetEvents(std::vector<std::span<const VisibilityEvent>> events) { events_ = std::move(events); }
 
   // By track.

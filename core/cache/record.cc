@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "core/math/check.h"
@@ -17,29 +16,18 @@ constexpr double kMostRatio = 0.75;
 // So many times the estimate an error at an event is no surprise.
 constexpr double kAsExpected = 1.25;
 
-using Event = std::span<const VisibilityEvent>::iterator;
-
-// The first one to the right of a place.
-Event Beyond(std::span<const VisibilityEvent> events, double place) {
-  return std::upper_bound(events.begin(), events.end(), place,
-                          [](double at, const VisibilityEvent& event) { return at < event.at; });
-}
-
-// By how much what jumped moves irradiance at a distance from there.
-double JumpAt(const VisibilityEvent& event, double distance) {
-  return event.jump[0].MaxSize() + distance * (event.jump[1].MaxSize() + 0.5 * distance * event.jump[2].MaxSize());
-}
-
 }  // namespace
 
 double CacheRecord::EventToLeft() const {
-  const Event next = Beyond(events, at);
-  return next == events.begin() ? std::numeric_limits<double>::infinity() : at - std::prev(next)->at;
+  const std::span<const VisibilityEvent> left = EventsIn(events, -std::numeric_limits<double>::infinity(), at);
+  const auto next = std::find_if_not(left.rbegin(), left.rend(), [&](const auto& event) { return Passes(event); });
+  return next == left.rend() ? std::numeric_limits<double>::infinity() : at - next->at;
 }
 
 double CacheRecord::EventToRight() const {
-  const Event next = Beyond(events, at);
-  return next == events.end() ? std::numeric_limits<double>::infinity() : next->at - at;
+  const std::span<const VisibilityEvent> right = EventsIn(events, at, std::numeric_limits<double>::infinity());
+  const auto next = std::find_if_not(right.begin(), right.end(), [&](const auto& event) { return Passes(event); });
+  return next == right.end() ? std::numeric_limits<double>::infinity() : next->at - at;
 }
 
 double CacheRecord::SmoothError(double distance) const {
@@ -60,25 +48,39 @@ double CacheRecord::SmoothError(double distance) const {
 double CacheRecord::ErrorOfStretch(double place) const {
   const double distance = std::abs(place - at), smooth = SmoothError(distance);
   if (!goes_on || distance == 0) return smooth;
-  const Event right = Beyond(events, at);
-  if (place > at ? right == events.end() : right == events.begin()) return smooth;
-  const VisibilityEvent& event = place > at ? *right : *std::prev(right);
-  const double range = std::abs(event.at - at);
-  if (!event.before || range == 0) return smooth;
-  const Spectrum truth = place > at ? *event.before : *event.before + event.jump[0];
-  const double off = (Extrapolate(*this, event.at, degree) - truth).MaxSize();
-  if (off <= kAsExpected * SmoothError(range) * scale) return smooth;
-  if (!(scale > 0)) return std::numeric_limits<double>::infinity();
-  // Something happens on the way that no event tells, as where a shadow's edge on another curve comes into sight.
-  return std::max(smooth, std::min(distance / range, 1.0) * off / scale);
+  const double infinity = std::numeric_limits<double>::infinity(), most = place > at ? EventToRight() : EventToLeft();
+  double error = smooth;
+  const auto hold = [&](const VisibilityEvent& event) {
+    const double range = std::abs(event.at - at);
+    // Of those in one place the last one tells what is right of it.
+    const bool last = &event == &events.back() || (&event + 1)->at > event.at;
+    if (!event.before || !last || range == 0 || range > most) return;
+    const Spectrum truth = place > at && !Passes(event) ? *event.before : *event.before + event.jump[0];
+    const double off = (Extrapolate(*this, event.at, degree) - truth).MaxSize();
+    if (off <= kAsExpected * SmoothError(range) * scale) return;
+    // Something happens on the way that no event tells, as where a shadow's edge on another curve comes into sight.
+    error = scale > 0 ? std::max(error, std::min(distance / range, 1.0) * off / scale) : infinity;
+  };
+  // The next one on that side, and of those on the way the farthest.
+  if (place > at) {
+    const std::span<const VisibilityEvent> side = EventsIn(events, at, infinity), passed = EventsIn(events, at, place);
+    if (!side.empty()) hold(side.front());
+    if (passed.size() > 1) hold(passed.back());
+  } else {
+    const std::span<const VisibilityEvent> side = EventsIn(events, -infinity, at), passed = EventsIn(events, place, at);
+    if (!side.empty()) hold(side.back());
+    if (passed.size() > 1) hold(passed.front());
+  }
+  return error;
 }
 
 double CacheRecord::ErrorAt(double place) const {
   const double smooth = ErrorOfStretch(place);
   double jumps = 0;
-  const Event here = Beyond(events, at), there = Beyond(events, place);
-  for (Event event = std::min(here, there); event != std::max(here, there); ++event)
-    jumps += JumpAt(*event, std::abs(place - event->at)) + unknown_jump * std::abs(place - event->at);
+  for (const VisibilityEvent& event : EventsIn(events, std::min(at, place), std::max(at, place))) {
+    const double distance = std::abs(place - event.at);
+    jumps += Passes(event) ? event.Rest(distance) : event.MostChange(distance) + unknown_jump * distance;
+  }
   // Where there is no light nothing is known of how much there could be.
   return jumps == 0 ? smooth : scale > 0 ? smooth + jumps / scale : std::numeric_limits<double>::infinity();
 }
@@ -94,6 +96,9 @@ Spectrum Extrapolate(const CacheRecord& record, double place, std::size_t degree
   const double distance = place - record.at;
   Spectrum sum = record.derivative[degree];
   for (std::size_t k = degree; k-- > 0;) sum = record.derivative[k] + (distance / static_cast<double>(k + 1)) * sum;
+  const double sign = place < record.at ? -1 : 1;
+  for (const VisibilityEvent& event : EventsIn(record.events, std::min(record.at, place), std::max(record.at, place)))
+    if (record.Passes(event)) sum = sum + sign * event.Change(place - event.at);
   return sum;
 }
 

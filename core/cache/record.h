@@ -9,25 +9,10 @@
 #include <optional>
 #include <span>
 
+#include "core/cache/visibility_event.h"
 #include "core/scene/spectrum.h"
 
 namespace flatlight {
-
-inline constexpr std::size_t kRecordOrders = 5;
-
-// A place on a track at which what is seen changes, and with it irradiance or one of its derivatives.
-struct VisibilityEvent {
-  double at = 0;
-  // By how much irradiance and its first two derivatives jump there, to the next larger coordinate.
-  std::array<Spectrum, 3> jump;
-  // Irradiance on its left, if all of it is known there: what extrapolation to there can be held against.
-  std::optional<Spectrum> before;
-
-  template <class Self, class Stream>
-  static void State(Self& self, Stream& stream) {
-    stream(self.at, self.jump, self.before);
-  }
-};
 
 // What a record's place sees, for estimates of how fast irradiance changes. Normalised units.
 struct Surroundings {
@@ -60,8 +45,8 @@ struct CacheRecord {
   // The events of its track, in order; none if error control does not ask for them. They must outlive this.
   std::span<const VisibilityEvent> events;
   // Set by SetErrors: the estimated error of extrapolation over a distance d is the sum of growth[k] d^k, beyond an
-  // event with what jumps there, relative to `scale`. If `goes_on`, the last two are terms of a series and the rest of
-  // it is estimated from them.
+  // event with what is not known of its jumps, relative to `scale`. If `goes_on`, the last two are terms of a series
+  // and the rest of it is estimated from them.
   std::array<double, kRecordOrders> growth{};
   bool goes_on = false;
   double scale = 0;
@@ -82,19 +67,24 @@ struct CacheRecord {
   }
 
   double Irradiance() const { return derivative[0].Max(); }
-  // Distances to the nearest events; infinite if there are none. At an event itself its right side counts.
+  // Distances to the nearest events whose jumps can't be taken off, where what it vouches for ends; infinite if there
+  // are none. At an event itself its right side counts.
   double EventToLeft() const;
   double EventToRight() const;
+  // Whether it is known what jumps at an event.
+  bool Passes(const VisibilityEvent& event) const { return event.known && unknown_jump == 0; }
   // As if there were no events.
   double SmoothError(double distance) const;
-  // The same, and at least what it takes to be off at the next event on that side as it is seen to be there.
+  // The same, and at least what it takes to be off at the next event on that side, and at the farthest one on the way,
+  // as it is seen to be there.
   double ErrorOfStretch(double place) const;
   double ErrorAt(double place) const;
   // The error that counts.
   double CostAt(double place) const;
 };
 
-// Irradiance at a place on the record's track by the Taylor polynomial of a degree. Requires degree < known.
+// Irradiance at a place on the record's track by the Taylor polynomial of a degree, and the known jumps of the events
+// between. Requires degree < known.
 Spectrum Extrapolate(const CacheRecord& record, double place, std::size_t degree);
 
 }  // namespace flatlight

@@ -5,7 +5,8 @@
 //
 // One thread, every method from the scene on, indexes and panels included. In each round caching goes first, and the
 // others get the processor time that it took, or what their first value at each point takes if that is longer. Errors
-// are root mean squares relative to irradiance, or to 1 % of its mean; medians over the rounds.
+// are root mean squares relative to irradiance, or to 1 % of its mean; medians over the rounds. Of caching's own
+// estimates: at how many points the error is above it, above twice as much, and the largest error over its estimate.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -73,6 +74,30 @@ double ErrorOf(const Field& field, const Field& truth) {
   return std::sqrt(squares / count);
 }
 
+// How far errors are beyond what caching expects of itself; what the reference is off by aside.
+struct Expectation {
+  double above = 0, far_above = 0;  // Shares of the points: beyond the estimate, and beyond twice as much.
+  double worst = 0;                 // In units of the estimate.
+};
+
+Expectation ExpectationOf(const Field& field, const Field& truth) {
+  constexpr double kOfReference = 1e-6;
+  Expectation expectation;
+  double count = 0;
+  for (std::size_t p = 0; p < truth.probes.size(); ++p) {
+    const ProbeField& probe = field.probes[p];
+    for (std::size_t i = 0; i < probe.irradiance.size(); ++i, ++count) {
+      const double correct = truth.probes[p].irradiance[i];
+      const double off = std::abs(probe.irradiance[i] - correct), estimate = probe.estimated_error[i];
+      expectation.worst = std::max(expectation.worst, off / (estimate + kOfReference * correct));
+      if (off > estimate + kOfReference * correct) ++expectation.above;
+      if (off > 2 * estimate + kOfReference * correct) ++expectation.far_above;
+    }
+  }
+  expectation.above /= count, expectation.far_above /= count;
+  return expectation;
+}
+
 double Median(std::vector<double> values) { return QuartilesOf(std::move(values)).median; }
 
 void Measure(const NamedScene& named, double tolerance, BenchTable& table) {
@@ -84,6 +109,7 @@ void Measure(const NamedScene& named, double tolerance, BenchTable& table) {
   std::vector<double> seconds, error;
   std::vector<double> other_seconds[2], other_error[2];
   double records = 0;
+  Expectation expectation;
   for (std::uint32_t round = 0; round < kRounds; ++round) {
     settings = Settings();
     settings.method = Method::kIrradianceCaching;
@@ -92,6 +118,7 @@ void Measure(const NamedScene& named, double tolerance, BenchTable& table) {
     records = static_cast<double>(caching.field->records.size());
     seconds.push_back(caching.seconds);
     error.push_back(ErrorOf(*caching.field, *truth));
+    expectation = ExpectationOf(*caching.field, *truth);
     int which = 0;
     for (const Method method : {Method::kPathTracing, Method::kRayTracing}) {
       settings = Settings();
@@ -106,7 +133,10 @@ void Measure(const NamedScene& named, double tolerance, BenchTable& table) {
     }
   }
   std::vector<std::string> row = {named.name, Short(static_cast<double>(scene->traits().probe_points)), Short(records),
-                                  Short(1e3 * Median(seconds)), Short(Median(error))};
+                                  Short(1e3 * Median(seconds)), Short(Median(error)),
+                                  // Every round has the same values.
+                                  Short(100 * expectation.above), Short(100 * expectation.far_above),
+                                  Short(expectation.worst)};
   for (int which = 0; which < 2; ++which) {
     row.push_back(Short(Median(other_seconds[which]) / Median(seconds)));
     row.push_back(Short(Median(other_error[which])));
@@ -116,8 +146,8 @@ void Measure(const NamedScene& named, double tolerance, BenchTable& table) {
 }
 
 int RunAll(double tolerance, const std::string& csv) {
-  BenchTable table({"scene", "points", "records", "ms", "error", "path tracing: time", "error", "times as large",
-                    "ray tracing: time", "error", "times as large"});
+  BenchTable table({"scene", "points", "records", "ms", "error", "% above estimate", "% above twice", "worst",
+                    "path tracing: time", "error", "times as large", "ray tracing: time", "error", "times as large"});
   for (const NamedScene& named : GalleryScenes(1'000'000)) {
     const SceneTraits& traits = named.scene->traits();
     if (traits.lambertian && traits.pixels == 0 && traits.camera_pixels == 0 && traits.probe_points > kFewestPoints)

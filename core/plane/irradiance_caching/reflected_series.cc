@@ -165,7 +165,11 @@ class Polynomial {
 }  // namespace
 
 ReflectedSeries::ReflectedSeries(const Scene& scene, const std::vector<Chart>& charts, const ReflectedLight& reflected)
-    : scene_(scene), charts_(charts), reflected_(reflected), count_(kLightCoefficients + kRecordOrders, kDigits) {}
+    : scene_(scene),
+      charts_(charts),
+      reflected_(reflected),
+      count_(kLightCoefficients + kRecordOrders, kDigits),
+      kinks_(scene.elements().size(), *reflected.mesh, *reflected.light) {}
 
 std::array<Spectrum, kRecordOrders> ReflectedSeries::At(const Receiver& receiver,
                                                         const std::vector<VisiblePiece>& pieces, bool occlusion) const {

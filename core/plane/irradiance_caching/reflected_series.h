@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/cache/record.h"
+#include "core/plane/irradiance_caching/light_kinks.h"
 #include "core/plane/reference/chart.h"
 #include "core/plane/reference/outlook.h"
 #include "core/plane/reference/panel_light.h"
@@ -31,12 +32,14 @@ class ReflectedSeries {
   // `pieces`: what the receiver sees. Without `occlusion` their ends stay where they are on the curves.
   std::array<Spectrum, kRecordOrders> At(const Receiver& receiver, const std::vector<VisiblePiece>& pieces,
                                          bool occlusion = true) const;
+  const LightKinks& kinks() const { return kinks_; }
 
  private:
   const Scene& scene_;
   const std::vector<Chart>& charts_;
   ReflectedLight reflected_;
   PointCount count_;
+  LightKinks kinks_;
 };
 
 }  // namespace flatlight

@@ -89,6 +89,14 @@ void Skyline::AddBreak(const Edge& edge, const Spectrum& after, std::uint64_t ow
   radiance_ = after;
 }
 
+void Skyline::SignKinks(const VisiblePiece& piece) {
+  for (const PieceEnd* end : {&piece.begin, &piece.end}) {
+    // The element's own end stays where it is.
+    if (end->own && end->edge.kind == Edge::Kind::kVertex) continue;
+    Sign(reflected_->kinks().Below(piece.element, piece.side, end->u));
+  }
+}
+
 void Skyline::LookFrom(const Receiver& receiver) {
   receiver_ = receiver;
   pieces_ = &outlook_.From(receiver);
@@ -111,6 +119,7 @@ void Skyline::LookFrom(const Receiver& receiver) {
     }
     const Spectrum radiance = scene_.curve_of(piece.element).EmittedRadiance(piece.side);
     AddBreak(piece.begin.edge, radiance, OwnerOf(piece.begin.edge, before, &piece), IdentityOf(piece, radiance));
+    if (reflected_) SignKinks(piece);
     before = &piece;
   }
   const bool ends_in_sky = !before || before->end.edge.kind != Edge::Kind::kHorizon;

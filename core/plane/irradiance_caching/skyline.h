@@ -48,6 +48,8 @@ class Skyline {
   };
   void AddBreak(const Edge& edge, const Spectrum& after, std::uint64_t owner, std::uint64_t identity);
   void Sign(std::uint64_t what);
+  // Which stretches of its light, between kinks, the ends of what is seen lie in.
+  void SignKinks(const VisiblePiece& piece);
   std::uint64_t IdentityOf(const VisiblePiece& piece, const Spectrum& radiance) const;
   std::uint64_t OwnerOf(const Edge& edge, const VisiblePiece* before, const VisiblePiece* after) const;
   // The second derivative of the sine of the direction to a fixed point of what is seen.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/plane/irradiance_caching/track_events.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +14,21 @@ constexpr double kPrecision = 0x1p-40;
 // Events so near to each other count as one.
 constexpr double kTogether = 1e-5;
 constexpr int kMostBetween = 64;
+// Of the irradiance, and of what its slope adds: more no term of a series changes it by to the next place, if it is of
+// use.
+constexpr double kMostTerm = 1;
+
+// Whether the series of what jumps tells what lies beyond as far as to the next place. In a corner it does not.
+// `irradiance`: beside the event; where light begins it is none yet.
+bool IsOfUse(const std::array<Spectrum, kRecordOrders>& jump, double irradiance, double distance) {
+  const double most = kMostTerm * (irradiance + distance * jump[1].MaxSize());
+  double power = 1;
+  for (std::size_t k = 0; k < kRecordOrders; ++k) {
+    if (!(power * jump[k].MaxSize() <= most)) return false;
+    power *= distance / static_cast<double>(k + 1);
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -44,9 +60,12 @@ std::vector<VisibilityEvent> EventsBetween(Skyline& skyline, const Track& track,
       const std::array<Spectrum, kRecordOrders> beyond = skyline.Irradiance();
       for (std::size_t k = 0; k < event.jump.size(); ++k) event.jump[k] = beyond[k] - before[k];
       if (skyline.knows_all()) event.before = before[0];
+      event.known = skyline.knows_all() && IsOfUse(event.jump, std::max(before[0].Max(), beyond[0].Max()), to - from);
       if (!events.empty() && event.at - events.back().at <= kTogether * (to - places[i - 1])) {
+        const double apart = events.back().at - event.at;
         for (std::size_t k = 0; k < event.jump.size(); ++k)
-          events.back().jump[k] = events.back().jump[k] + event.jump[k];
+          events.back().jump[k] = events.back().jump[k] + event.Derivative(k, apart, event.jump.size());
+        events.back().known = events.back().known && event.known;
       } else {
         events.push_back(event);
       }

@@ -204,5 +204,92 @@ TEST(PlacementTest, RecordsEndAtEvents) {
   }
 }
 
+// What an edge uncovers beyond each of some places, of which all is known or nothing.
+struct Kinked {
+  std::vector<VisibilityEvent> events;
+
+  explicit Kinked(const std::vector<double>& places, bool known) {
+    for (const double at : places) {
+      VisibilityEvent& event = events.emplace_back();
+      event.at = at;
+      for (std::size_t k = 0; k < kRecordOrders; ++k) event.jump[k] = Spectrum::Grey(Uncovered(0)[k]);
+      if (known) event.before = Spectrum::Grey(Before(events.size() - 1, at));
+      event.known = known;
+    }
+  }
+  // 1 - exp(-x)
+  static std::array<double, kRecordOrders> Uncovered(double x) {
+    const double e = std::exp(-x);
+    return {1 - e, e, -e, e, -e};
+  }
+  double Before(std::size_t count, double x) const {
+    double sum = Wave(x)[0];
+    for (std::size_t i = 0; i < count; ++i) sum += Uncovered(x - events[i].at)[0];
+    return sum;
+  }
+  Function function() const {
+    return [this](double x) {
+      auto values = Wave(x);
+      for (const VisibilityEvent& event : events) {
+        if (x < event.at) break;
+        const auto more = Uncovered(x - event.at);
+        for (std::size_t k = 0; k < kRecordOrders; ++k) values[k] += more[k];
+      }
+      return values;
+    };
+  }
+};
+
+TEST(PlacementTest, ToleranceIsKeptAcrossKnownEventsWithFewerRecords) {
+  const std::vector<double> points = Points(400, 0, 4), places = {0.5, 0.6, 0.61, 1.9, 2.5, 3.3, 3.995};
+  for (const std::size_t degree : {1u, 2u}) {
+    for (const double tolerance : {1e-4, 1e-3, 1e-2}) {
+      std::size_t count[2];
+      for (const bool known : {false, true}) {
+        const Kinked kinked(places, known);
+        const Placement placement({points}, {.degree = degree, .tolerance = tolerance});
+        const std::vector<CacheRecord> records = Fill(placement, kinked.function(), kinked.events);
+        EXPECT_LE(WorstError(records, points, 0, degree, kinked.function()), 1.5 * tolerance)
+            << degree << ' ' << tolerance << ' ' << known;
+        count[known ? 1 : 0] = records.size();
+      }
+      EXPECT_LT(count[1], count[0]) << degree << ' ' << tolerance;
+    }
+  }
+}
+
+TEST(PlacementTest, ABudgetIsBestSpentAcrossKnownEvents) {
+  const std::vector<double> points = Points(400, 0, 4), places = {0.5, 0.6, 0.61, 1.9, 2.5, 3.3, 3.995};
+  for (const std::size_t degree : {1u, 2u}) {
+    for (const std::size_t budget : {5u, 8u, 12u}) {
+      double error[2];
+      for (const bool known : {false, true}) {
+        const Kinked kinked(places, known);
+        Placement placement({points}, {.degree = degree, .most_records = budget});
+        placement.SetEvents({kinked.events});
+        const std::vector<CacheRecord> records = Fill(placement, kinked.function(), kinked.events);
+        EXPECT_EQ(records.size(), budget);
+        error[known ? 1 : 0] = WorstError(records, points, 0, degree, kinked.function());
+      }
+      EXPECT_LT(2 * error[1], error[0]) << degree << ' ' << budget;
+    }
+  }
+}
+
+TEST(PlacementTest, FootprintsMeetAcrossKnownEvents) {
+  const std::vector<double> points = Points(400, 0, 4);
+  const Kinked kinked({0.5, 1.9, 2.5, 3.3}, true);
+  const std::vector<CacheRecord> records =
+      Fill(Placement({points}, {.degree = 2, .most_records = 6}), kinked.function(), kinked.events);
+  std::vector<const CacheRecord*> sorted;
+  for (const CacheRecord& record : records) sorted.push_back(&record);
+  std::sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) { return a->at < b->at; });
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const double apart = sorted[i]->at - sorted[i - 1]->at;
+    EXPECT_DOUBLE_EQ(sorted[i - 1]->right_radius, apart);
+    EXPECT_DOUBLE_EQ(sorted[i]->left_radius, apart);
+  }
+}
+
 }  // namespace
 }  // namespace flatlight
