@@ -72,9 +72,9 @@ std::string Differences(const std::string& expected, const std::string& result) 
   return report.substr(0, 1000);
 }
 
-// Watches to the end; the state in which it ended.
+// Watches to the end; the state in which it ended. On a busy machine what the kills have left over takes long.
 v1::Job::State AwaitEnd(v1::RenderService::Stub& render, const std::string& job) {
-  CallContext context;
+  CallContext context(std::chrono::minutes(30));
   v1::WatchJobRequest request;
   request.set_name(job);
   const auto reader = render.WatchJob(&context, request);
@@ -162,8 +162,11 @@ int Run(const std::string& program, int kills, std::uint64_t seed) {
   int lost = 0, altered = 0;
   for (const Submitted& one : submitted) {
     names.insert(one.job);
-    if (listed.count(one.job) == 0 || AwaitEnd(daemon.render(), one.job) != v1::Job::SUCCEEDED) {
-      std::printf("lost: %s, %s\n", one.job.c_str(), requests[one.request].ShortDebugString().c_str());
+    const bool is_listed = listed.count(one.job) > 0;
+    const auto end = is_listed ? AwaitEnd(daemon.render(), one.job) : v1::Job::STATE_UNSPECIFIED;
+    if (end != v1::Job::SUCCEEDED) {
+      std::printf("lost: %s, %s, %s\n", one.job.c_str(), is_listed ? v1::Job::State_Name(end).c_str() : "not listed",
+                  requests[one.request].ShortDebugString().c_str());
       ++lost;
     } else if (const std::string result = FetchResult(daemon.render(), one.job); result != expected[one.request]) {
       std::printf("altered: %s, %s\n%s", one.job.c_str(), requests[one.request].ShortDebugString().c_str(),
