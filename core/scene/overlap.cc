@@ -73,15 +73,15 @@ bool Covered(const Element& element, const Element& other, double near, Stretch&
   const Vector2 chord = element.b - element.a;
   const double length = Length(chord);
   if (element.kind == Element::Kind::kSegment) {
-    const double side_a = Cross(chord, other.a - element.a) / length;
-    const double side_b = Cross(chord, other.b - element.a) / length;
+    double side_s = Cross(chord, other.a - element.a) / length;
+    double side_t = Cross(chord, other.b - element.a) / length;
     double s = Dot(other.a - element.a, chord) / length;
     double t = Dot(other.b - element.a, chord) / length;
-    if (s > t) std::swap(s, t);
+    if (s > t) std::swap(s, t), std::swap(side_s, side_t);
     const double from = std::max(s, 0.0), to = std::min(t, length);
     if (!(to - from > near)) return false;
     // Distance between the lines at both ends of the common stretch.
-    const auto side_at = [&](double x) { return side_a + (side_b - side_a) * (x - s) / (t - s); };
+    const auto side_at = [&](double x) { return side_s + (side_t - side_s) * (x - s) / (t - s); };
     if (std::abs(side_at(from)) > near || std::abs(side_at(to)) > near) return false;
     stretch = {from / length, to / length};
     return true;

@@ -42,15 +42,19 @@ Edge TrueEdge(const Scene& scene, const Receiver& receiver, const Edge& edge) {
   if (edge.kind == Edge::Kind::kHorizon || edge.kind == Edge::Kind::kTouch) return edge;
   Receiver itself = receiver;
   itself.position = receiver.position + receiver.offset;
-  const bool touches = edge.kind == Edge::Kind::kSilhouette && edge.element != ElementId::kNone;
-  const Element* const element = touches ? &scene.element(edge.element) : nullptr;
-  const BezierPiece* const on = touches ? scene.bezier_piece(*element) : nullptr;
+  const Element* const element = edge.element == ElementId::kNone ? nullptr : &scene.element(edge.element);
+  const BezierPiece* const on = element == nullptr ? nullptr : scene.bezier_piece(*element);
+  // Where elements meet at a corner the curve has none: it turns sharply, and ends where it touches the direction.
+  const bool joint = edge.kind == Edge::Kind::kVertex;
   Edge found = VertexEdge(itself, edge.point);
   found.kind = edge.kind, found.signed_radius = edge.signed_radius, found.element = edge.element;
   found.crossing = edge.crossing;
   found.turn = edge.turn, found.stretch = edge.stretch;
-  if (on == nullptr || !on->bends) return found;
-  found.radius_error = std::abs(edge.signed_radius);  // If nothing better is found.
+  if (on == nullptr || !(on->bends || joint)) return found;
+  // If nothing better is found: it is as far off as elements may be, or as they are long.
+  const double off = scene.bezier_distance() + (on->bends ? 0 : element->length);
+  found.turn += 2 * off * found.q, found.stretch += 2 * off * found.q;
+  found.radius_error = joint ? off : std::abs(edge.signed_radius);
   const Bezier& bezier = scene.beziers()[on->bezier];
   const Vector2 chord = element->b - element->a;
   const double share = Dot(edge.point - element->a, chord) / LengthSquared(chord);
@@ -58,26 +62,35 @@ Edge TrueEdge(const Scene& scene, const Receiver& receiver, const Edge& edge) {
   // The touching point may be a little beyond the stretch.
   const double reach = on->to - on->from;
   const double low = std::max(0.0, on->from - reach), high = std::min(1.0, on->to + reach);
+  Vector2 to, first;
   for (int i = 0; i < 20; ++i) {
     // The sine of the angle between the direction and the tangent is 0, also where the curve comes to a stand nearby.
-    const Vector2 to = bezier.At(u) - itself.position, first = bezier.First(u);
+    to = bezier.At(u) - itself.position, first = bezier.First(u);
     const double turn = Cross(first, bezier.Second(u)) * Dot(to, first);
     const double next = std::clamp(u - Cross(to, first) * LengthSquared(first) / turn, low, high);
     if (!(std::abs(next - u) > 4 * kUnitRoundoff)) break;
     u = next;
   }
   const Point2 touch = bezier.At(u);
-  if (!(Length(touch - edge.point) <= element->length)) return found;
+  // No such place in reach, at the end of it for instance.
+  constexpr double kTouches = 1e-6;
+  if (!(std::abs(Cross(to, first)) <= kTouches * Length(to) * Length(first))) return found;
+  if (!(Length(touch - edge.point) <= element->length + 2 * off)) return found;
+  const Edge unknown = found;
   found = VertexEdge(itself, touch);  // Known as coordinates are, whatever arcs meet there.
   found.kind = Edge::Kind::kSilhouette, found.element = edge.element;
   // At an inflection, and where the curve stands still, the arc's.
-  const double radius = std::abs(1 / bezier.Curvature(u));
-  found.signed_radius = std::isfinite(radius) ? std::copysign(radius, edge.signed_radius) : edge.signed_radius;
+  const double curvature = bezier.Curvature(u), radius = std::abs(1 / curvature);
+  const Vector2 inward = curvature * Left(first);
+  const double toward = found.c * Dot(receiver.tangent, inward) - found.s * Dot(receiver.normal, inward);
+  if (joint && !std::isfinite(radius)) return unknown;
+  found.signed_radius =
+      std::isfinite(radius) ? std::copysign(radius, joint ? toward : edge.signed_radius) : edge.signed_radius;
   found.radius_error = std::abs(found.signed_radius);
   if (!std::isfinite(radius)) return found;
   // The place slides by as much as the direction is off.
   Receiver there;
-  there.curvature = bezier.Curvature(u), there.curvature_change = bezier.CurvatureChange(u);
+  there.curvature = curvature, there.curvature_change = bezier.CurvatureChange(u);
   const double coordinate_error = scene.coordinate_error() + receiver.displaced;
   const double slides = radius * (2 * coordinate_error * found.q + receiver.tilt + 4 * kUnitRoundoff);
   BoundPlaceOnBezier(bezier, u, slides, scene.coordinate_error(), there);

@@ -157,7 +157,9 @@ const Envelope& Gatherer::GatherAmong(const std::vector<Bvh::Slot>& slots, const
 
 const SightBetween* Gatherer::See(const Bvh::Slot& slot, bool straight) {
   const auto element = static_cast<ElementId>(slot.element);
-  if (straight || scene_.element(element).kind == Element::Kind::kSegment) {
+  // Where segments of a Bézier meet there is no corner.
+  const bool plain = !scene_.traits().has_beziers || scene_.bezier_piece(scene_.element(element)) == nullptr;
+  if (plain && (straight || scene_.element(element).kind == Element::Kind::kSegment)) {
     if (has_own_ && slot.carrier == own_carrier_) return nullptr;
     SightBetween& next = envelope_.Next();
     const Seen seen = SeeSegment(scene_, *receiver_, slot.a, slot.b, left_handed_, next);

@@ -37,7 +37,7 @@ class PartBuilder {
     if (!own && !own_run && MayTouch() && TouchesReceiver(scene_, element_, receiver_))
       return TouchingParts(scene_, id_, receiver_);
     if (element_.kind == Element::Kind::kSegment) {
-      if (!own) Add(Part::Kind::kStraight, VertexEdge(receiver_, element_.a), VertexEdge(receiver_, element_.b));
+      if (!own) Add(Part::Kind::kStraight, OwnEnd(element_.a), OwnEnd(element_.b));
     } else if (own_run) {
       // The receiver's own Bézier, which bends to one side: seen from its hollow side, and up to the receiver.
       const Element& own_element = scene_.element(receiver_.element);
@@ -107,7 +107,7 @@ class PartBuilder {
   // The receiver looks along the Bézier, not along the arc: each end is above its horizon or not, for both arcs that
   // meet there alike.
   void BuildOwnRun() {
-    const Edge a = VertexEdge(receiver_, element_.a), b = VertexEdge(receiver_, element_.b);
+    const Edge a = OwnEnd(element_.a), b = OwnEnd(element_.b);
     if (id_ != receiver_.element) return Add(Part::Kind::kConcave, a, b);
     const Vector2 along =
         element_.Orientation() * Left(element_.radial_a + (receiver_.position - element_.a) / element_.radius);
@@ -171,6 +171,16 @@ class PartBuilder {
     }
   }
 
+  // Of an end of the element.
+  Edge OwnEnd(Point2 end) const {
+    Edge vertex = VertexEdge(receiver_, end);
+    if (const BezierPiece* const on = scene_.bezier_piece(element_)) {
+      const Bezier& bezier = scene_.beziers()[on->bezier];
+      if (end != bezier.p[0] && end != bezier.p[3] && !bezier.IsStraight()) vertex.element = id_;
+    }
+    return vertex;
+  }
+
   bool ShowsConvexSide(Point2 end, Vector2 radial) const {
     const double height = Dot(receiver_.position - end, radial);
     if (std::abs(height) > 2 * scene_.coordinate_error()) return height > 0;
@@ -181,7 +191,7 @@ class PartBuilder {
   // The edge of an end. Where the circle goes on beyond it and the touching point is so near that their directions
   // agree, light ends at the touching point, which moves in another way.
   Edge EndEdge(const CircleView& view, Point2 end, Vector2 radial, double side) const {
-    const Edge vertex = VertexEdge(receiver_, end);
+    const Edge vertex = OwnEnd(end);
     if (!(view.f > 0) || !GoesOnBeyond(end, radial)) return vertex;
     const double near = 8 * kUnitRoundoff + 4 * scene_.coordinate_error() * vertex.q;
     // Before the end, as a rule; or a little beyond it, on the piece that begins there.

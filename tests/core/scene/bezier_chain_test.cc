@@ -62,6 +62,29 @@ TEST(BezierChainTest, FollowsTheCurveWithoutACorner) {
   }
 }
 
+// Where the curve stands still and turns back no arc follows it: short segments do, as near to it, and as long as it
+// is.
+TEST(BezierChainTest, TheTipsOfCuspsAreSegmentsOfTheCurvesLength) {
+  // Of a cusp to rounding, at places that no power of two names.
+  const std::vector<Bezier> cusps = {{{{0, 0}, {1, 1}, {0, 1}, {1, 0}}},
+                                     {{{0, 0}, {0.9, 1.1}, {0.9 - 1.0 / 1.35, 1.1}, {0.85, 0.1}}},
+                                     {{{0, 0}, {1, 1}, {1e-7, 1}, {1, 0}}}};
+  int tips = 0;
+  for (const Bezier& bezier : cusps) {
+    for (const double tolerance : {1e-8, 1e-5}) {
+      for (const BezierChain::Piece& piece : MakeBezierChain(bezier, tolerance).pieces) {
+        if (piece.on.bends) continue;
+        ++tips;
+        const double from = piece.on.from, to = piece.on.to;
+        EXPECT_NEAR(piece.element.length, bezier.Length(from, to), 1e-9 * piece.element.length);
+        for (int k = 0; k <= 20; ++k)
+          EXPECT_LE(DistanceTo(piece.element, bezier.At(from + (to - from) * k / 20)), tolerance);
+      }
+    }
+  }
+  EXPECT_GE(tips, 3);
+}
+
 TEST(BezierChainTest, HasTheLengthOfTheCurve) {
   for (const Bezier& bezier : Shapes()) {
     double length = 0, sum = 0;

@@ -267,5 +267,28 @@ TEST(BezierTest, TheBoundHoldsWhereArcsCrossElsewhereThanTheirCurves) {
   EXPECT_LT(value.irradiance_error, 1e-6);
 }
 
+// One turns back within less than arcs follow it: what follows it there has a corner, the curve has none. Its touching
+// point is found on the curve, whichever way that runs.
+TEST(BezierTest, ATipThatIsSharperThanArcsFollowTouchesAsTheCurveDoes) {
+  const BezierDescription tip{{-0.23891922209295258, -0.3378515455727591},
+                              {0.2580391464700607, -0.2638353870218076},
+                              {-0.31293318116849766, -0.3029660690116188},
+                              {-0.3122503793280489, -0.5136621294593928}};
+  SceneDescription scene = EmptyScene(), reversed = EmptyScene();
+  AddCurve(scene, tip), AddCurve(reversed, Reversed(tip));
+  for (SceneDescription* one : {&scene, &reversed}) {
+    AddCurve(*one, SegmentDescription{{-0.6, -0.6}, {0.6, -0.6}}, 1);
+    ProbeDescription probe;
+    probe.name = "free";
+    probe.points.push_back({{0.3916523266892864, 0.20180668073544972}, {0.08330096601361044, -0.996524434753709}});
+    one->probes.push_back(probe);
+  }
+  const WorldValue value = Solve(*Build(scene), 0)[0], other = Solve(*Build(reversed), 0)[0];
+  EXPECT_NEAR(value.irradiance, other.irradiance, value.irradiance_error + other.irradiance_error);
+  EXPECT_NEAR(value.gradient, other.gradient, value.gradient_error + other.gradient_error);
+  EXPECT_NEAR(value.hessian, other.hessian, value.hessian_error + other.hessian_error);
+  EXPECT_LT(value.irradiance_error, 1e-12);
+}
+
 }  // namespace
 }  // namespace flatlight

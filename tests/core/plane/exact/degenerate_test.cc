@@ -460,5 +460,19 @@ TEST(DegenerateTest, ALampNearTheHorizonOfAReceiverOfAFewAtoms) {
   EXPECT_LT(value.irradiance_error, 1e-3);
 }
 
+// Two walls that run in opposite directions, 7e-15 apart at one end: not one over the other, though one's other end is
+// on the line of the other.
+TEST(DegenerateTest, WallsInOppositeDirectionsAreTwoIfTheyAreApart) {
+  SceneDescription scene = EmptyScene();
+  AddCurve(scene,
+           SegmentDescription{{-0.39717349574242733, -0.21420116134490885}, {-0.607816047398, -0.20921833357503672}});
+  AddCurve(scene,
+           SegmentDescription{{-0.6078160473976885, -0.20921833357503672}, {-0.5656875370666362, -0.21021489912901115}},
+           1);
+  AddCurve(scene, SegmentDescription{{0.2, 0.4}, {-0.5, 0.2}});
+  ExpectTrue(Probe(scene, 2, 0, 1.0 / 3, Side::kFront), 1e-13);
+  EXPECT_GT(TruthOf(scene)->irradiance, 0.01);
+}
+
 }  // namespace
 }  // namespace flatlight
