@@ -32,11 +32,10 @@ struct Edge {
   // Bounds on errors beyond those of the coordinates: of theta, and of the distance, relative.
   double turn = 0;
   double stretch = 0;
-  double radius_error = 0;  // Of signed_radius.
-  Point2 point;             // Not at the horizon.
-  // Silhouettes: the arc. Vertices: one of the elements of a Bézier that meet there, if it goes on.
-  ElementId element = ElementId::kNone;
-  bool crossing = false;  // Vertices: where two curves cross.
+  double radius_error = 0;               // Of signed_radius.
+  Point2 point;                          // Not at the horizon.
+  ElementId element = ElementId::kNone;  // Silhouettes: the arc. Vertices where a Bézier goes on: an element of it.
+  bool crossing = false;                 // Vertices: where two curves cross.
 
   double Distance() const { return 1 / q; }
 };
