@@ -174,11 +174,21 @@ class PartBuilder {
   // Of an end of the element.
   Edge OwnEnd(Point2 end) const {
     Edge vertex = VertexEdge(receiver_, end);
-    if (const BezierPiece* const on = scene_.bezier_piece(element_)) {
-      const Bezier& bezier = scene_.beziers()[on->bezier];
-      if (end != bezier.p[0] && end != bezier.p[3] && !bezier.IsStraight()) vertex.element = id_;
-    }
+    if (IsCornerOfChain(end)) vertex.element = id_;
     return vertex;
+  }
+
+  // Whether the Bézier that the element follows goes on at the end, and the elements that meet there have a corner that
+  // the curve has not: arcs that follow it have none.
+  bool IsCornerOfChain(Point2 end) const {
+    const BezierPiece* const on = scene_.bezier_piece(element_);
+    if (on == nullptr) return false;
+    const Curve& curve = scene_.curve(element_.curve);
+    const auto e = static_cast<std::uint32_t>(id_) + (end == element_.a ? 0xffffffffU : 1U);
+    if (e < curve.first_element || e >= curve.first_element + curve.element_count) return false;
+    const BezierPiece* const beside = scene_.bezier_piece(scene_.elements()[e]);
+    return beside != nullptr && beside->bezier == on->bezier && !(on->bends && beside->bends) &&
+           !scene_.beziers()[on->bezier].IsStraight();
   }
 
   bool ShowsConvexSide(Point2 end, Vector2 radial) const {
