@@ -88,9 +88,9 @@ TEST_F(LoadSceneTest, AnUploadIsBuiltOnce) {
 TEST_F(LoadSceneTest, StopsBeforeThePhaseThatNobodyWants) {
   EXPECT_EQ(ReasonOf(Load(0).status()), "STOPPED") << "before reading";
   EXPECT_EQ(ReasonOf(Load(1).status()), "STOPPED") << "before building";
-  EXPECT_EQ(cache_.Get(hash_), nullptr);
+  EXPECT_EQ(cache_.Get(caller_.name, hash_), nullptr);
   EXPECT_EQ(ReasonOf(Load(2).status()), "STOPPED") << "before what follows";
-  EXPECT_NE(cache_.Get(hash_), nullptr) << "the next call need not begin anew";
+  EXPECT_NE(cache_.Get(caller_.name, hash_), nullptr) << "the next call need not begin anew";
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ class WebhookOutboxTest : public ::testing::Test {
   }
   std::vector<std::string> OwnersDue(WallTime now, std::size_t per_owner = 100, std::size_t most = 100) {
     std::vector<std::string> owners;
-    for (const DueWebhook& webhook : *outbox_.Due(now, per_owner, most)) owners.push_back(webhook.owner);
+    const auto due = *outbox_.Due(now, per_owner, most);
+    for (const DueWebhook& webhook : due) owners.push_back(webhook.owner);
     return owners;
   }
 
