@@ -24,8 +24,8 @@ namespace {
 void CheckCount(const Scene& scene, const std::string& path, const std::string& other, Diagnostics& diagnostics) {
   if (scene.traits().elements <= kMostReferencePieces) return;
   diagnostics.Add(path, "reference does scenes of up to " + Text(kMostReferencePieces) +
-                            " straight and arced pieces, and this one has " + Text(scene.traits().elements) +
-                            ": use " + other);
+                            " straight and arced pieces, and this one has " + Text(scene.traits().elements) + ": use " +
+                            other);
 }
 
 // Of the first curve that reflects by such a material; empty if there is none.
@@ -47,10 +47,13 @@ void CheckPanelDerivatives(const Scene& scene, const std::string& path, const st
   const std::string curve =
       NameOfCurve(scene, [](const Material& material) { return !std::holds_alternative<Lambertian>(material); });
   if (!scene.traits().lambertian) {
-    diagnostics.Add(path, "reference gives derivatives in scenes that reflect by lambertian materials alone, and curve "
-                          "\"" + curve + "\" has another: use " + other);
+    diagnostics.Add(path,
+                    "reference gives derivatives in scenes that reflect by lambertian materials alone, and curve "
+                    "\"" +
+                        curve + "\" has another: use " + other);
   } else if (scene.traits().has_beziers) {
-    diagnostics.Add(path, "reference gives no derivatives of light reflected in a scene with Bézier curves: use " + other);
+    diagnostics.Add(path,
+                    "reference gives no derivatives of light reflected in a scene with Bézier curves: use " + other);
   }
   CheckCount(scene, path, other, diagnostics);
 }
@@ -66,8 +69,8 @@ void CheckPanels(const Scene& scene, const std::string& path, const std::string&
   }
   const std::string specular = NameOfCurve(scene, IsSpecular);
   if (!scene.lights().empty()) {
-    diagnostics.Add(path, "reference leaves out what plane.lights send over mirrors and glass, and curve \"" + specular +
-                              "\" is one: use " + other);
+    diagnostics.Add(path, "reference leaves out what plane.lights send over mirrors and glass, and curve \"" +
+                              specular + "\" is one: use " + other);
   }
   if (scene.traits().has_beziers) {
     diagnostics.Add(path, "reference does scenes with Bézier curves where nothing is a mirror or glass, and curve \"" +

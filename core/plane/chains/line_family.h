@@ -21,8 +21,8 @@ struct DirectedLine {
 
 // How well families follow their lines.
 struct LineFit {
-  double tolerance = 1e-11;        // Of directions and moments.
-  double least_part = 0x1p-20;     // Of the whole; shorter pieces are not made smoother.
+  double tolerance = 1e-11;     // Of directions and moments.
+  double least_part = 0x1p-20;  // Of the whole; shorter pieces are not made smoother.
 };
 
 // Lines that depend smoothly on a number between begin and end.
@@ -44,8 +44,8 @@ struct LineFamily {
 
   // The family of line(u) over the numbers from begin to end, in as many pieces as it takes to be smooth; calls
   // emit(LineFamily). Where line(u) is absent at a node, pieces are halved as long as
-  // hopeful(begin, end) says that they may hold something. Pieces of fit.least_part of the whole are given up, or taken as
-  // they are: near a number where lines turn without bound, as at total reflection.
+  // hopeful(begin, end) says that they may hold something. Pieces of fit.least_part of the whole are given up, or taken
+  // as they are: near a number where lines turn without bound, as at total reflection.
   template <typename Line, typename Hopeful, typename Emit>
   static void Fit(double begin, double end, const Line& line, const Hopeful& hopeful, const Emit& emit,
                   const LineFit& fit = {}) {
@@ -83,8 +83,7 @@ struct LineFamily {
     for (const double t : {0.0, 0.0301536896, 0.32898992833716567, 0.58682408883346, 0.93301270189221941, 1.0}) {
       const std::optional<DirectedLine> at = line(At(t));
       if (!at) return false;
-      if (!(std::abs(x.At(t) - at->direction.x) <= tolerance) ||
-          !(std::abs(y.At(t) - at->direction.y) <= tolerance) ||
+      if (!(std::abs(x.At(t) - at->direction.x) <= tolerance) || !(std::abs(y.At(t) - at->direction.y) <= tolerance) ||
           !(std::abs(moment.At(t) - at->moment) <= tolerance)) {
         return false;
       }

@@ -43,7 +43,8 @@ void ErrorGrowth::Look(std::size_t i) {
   for (std::size_t r = i * kNodes; r < (i + 1) * kNodes; ++r) {
     const Row& row = rows_[r];
     double sum = 0;
-    for (std::size_t e = 0; e < row.panels.size(); ++e) sum += row.Tint(e, channel_) * row.low[e * kNodes] * bounds_[row.panels[e]];
+    for (std::size_t e = 0; e < row.panels.size(); ++e)
+      sum += row.Tint(e, channel_) * row.low[e * kNodes] * bounds_[row.panels[e]];
     const double wanted = source_[r] + half_[i] * sum;
     if (wanted > equation.wanted) equation.wanted = wanted, worst = r;
     const double lack = wanted - bounds_[i];

@@ -24,8 +24,8 @@ class ErrorGrowth {
   using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
 
   // `rows` and `source` by panel, then node; rho/2 by panel. The rows must outlive this.
-  ErrorGrowth(const std::vector<Row>& rows, std::size_t channel, std::vector<double> source, std::vector<double> half_reflectance,
-              std::optional<std::uint32_t> bounces);
+  ErrorGrowth(const std::vector<Row>& rows, std::size_t channel, std::vector<double> source,
+              std::vector<double> half_reflectance, std::optional<std::uint32_t> bounces);
 
   // Goes step by step; returns whether the bounds are there.
   bool Step(const Loop& loop);

@@ -79,15 +79,15 @@ std::size_t Radiosity::memory() const {
   std::size_t entries = 0, high_entries = 0, specular_bytes = 0;
   const auto add = [&](const Row& row, std::size_t& to) {
     to += row.panels.size();
-    specular_bytes += row.tints.size() * (sizeof(Spectrum) + sizeof(std::uint32_t)) +
-                      row.specular.size() * sizeof(SpecularPiece);
+    specular_bytes +=
+        row.tints.size() * (sizeof(Spectrum) + sizeof(std::uint32_t)) + row.specular.size() * sizeof(SpecularPiece);
   };
   for (const Row& row : rows_.nodes) add(row, high_entries);
   for (const Row& row : rows_.between) add(row, entries);
   for (const std::vector<Row>& rows : rows_.cells)
     for (const Row& row : rows) add(row, entries);
-  return (entries + high_entries) * (kNodes * sizeof(double) + sizeof(std::uint32_t)) +
-         specular_bytes + high_entries * (kResidualCoefficients - kNodes + (positive_.empty() ? 0 : kNodes)) * sizeof(float);
+  return (entries + high_entries) * (kNodes * sizeof(double) + sizeof(std::uint32_t)) + specular_bytes +
+         high_entries * (kResidualCoefficients - kNodes + (positive_.empty() ? 0 : kNodes)) * sizeof(float);
 }
 
 void Radiosity::DropRows() {

@@ -36,7 +36,7 @@ struct Row {
   double lost = 0;
   // Of the entries, which come in the order of stretches, then of specular pieces. A panel may come more than once.
   std::vector<std::uint32_t> panels;
-  std::vector<Spectrum> tints;  // Empty: all are white.
+  std::vector<Spectrum> tints;        // Empty: all are white.
   std::vector<std::uint32_t> pieces;  // 0: of a stretch; i: of the i-th specular piece. Empty: all are of stretches.
   // Irradiance from each Legendre polynomial on each of them: kLightCoefficients, and the rest up to
   // kResidualCoefficients, of which few digits count.

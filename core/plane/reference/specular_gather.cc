@@ -23,15 +23,14 @@ Spectrum EmittedBy(const Scene& scene, const SpecularPiece& piece) {
 }
 
 std::optional<double> SpecularGather::PlaceOf(const Receiver& receiver, const SpecularPiece& piece,
-                                                const SpecularRay& ray) const {
-  const std::optional<double> distance =
-      DistanceBehind(scene_, receiver, *piece.way, ray, piece.element, piece.far);
+                                              const SpecularRay& ray) const {
+  const std::optional<double> distance = DistanceBehind(scene_, receiver, *piece.way, ray, piece.element, piece.far);
   if (!distance) return std::nullopt;
   return charts_[static_cast<std::size_t>(piece.element)].Find(ray.from + *distance * ray.direction);
 }
 
 std::size_t SpecularGather::PanelAt(const Receiver& receiver, const SpecularPiece& piece, const PanelMesh& mesh,
-                                      double x) const {
+                                    double x) const {
   const PanelMesh::Range range = mesh.On(piece.element, piece.side);
   const std::optional<SpecularRay> ray = FollowWay(scene_, receiver, *piece.way, piece.directions->At(x));
   const std::optional<double> u = ray ? PlaceOf(receiver, piece, *ray) : std::nullopt;
@@ -45,8 +44,8 @@ SpecularGather::Moments SpecularGather::OfPiece(const Receiver& receiver, const 
   return Of(receiver, piece, nullptr, 1, piece.begin, piece.end);
 }
 
-SpecularGather::Moments SpecularGather::Of(const Receiver& receiver, const SpecularPiece& piece,
-                                               const Panel* panel, std::size_t count, double from, double to) const {
+SpecularGather::Moments SpecularGather::Of(const Receiver& receiver, const SpecularPiece& piece, const Panel* panel,
+                                           std::size_t count, double from, double to) const {
   Moments all;
   const double theta_from = piece.directions->At(from), theta_to = piece.directions->At(to);
   if (panel == nullptr && piece.way->straight) {
@@ -54,7 +53,8 @@ SpecularGather::Moments SpecularGather::Of(const Receiver& receiver, const Specu
     return all;
   }
   // Where rays begin to touch what they end on is smooth neither in theta nor in the piece's own numbers.
-  const Directions part{from, to, panel != nullptr && scene_.element(piece.element).kind == Element::Kind::kArc, nullptr};
+  const Directions part{from, to, panel != nullptr && scene_.element(piece.element).kind == Element::Kind::kArc,
+                        nullptr};
   const GaussRule& rule = Gauss(kPoints);
   const auto sum_over = [&](double low, double high) {
     Values sum{};
@@ -69,9 +69,8 @@ SpecularGather::Moments SpecularGather::Of(const Receiver& receiver, const Specu
         if (!u) continue;
         Legendre(std::clamp(panel->Local(*u), -1.0, 1.0), count, p);
       }
-      const double weight =
-          0.5 * (high - low) * rule.weight[k] * part.Slope(x) *
-                            piece.directions->Slope(number) * SinCos(theta).cos * ray->share;
+      const double weight = 0.5 * (high - low) * rule.weight[k] * part.Slope(x) * piece.directions->Slope(number) *
+                            SinCos(theta).cos * ray->share;
       for (std::size_t i = 0; i < count; ++i) sum[i] += weight * p[i];
     }
     return sum;

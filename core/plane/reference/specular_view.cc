@@ -254,7 +254,8 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
   const Element& element = scene_.element(met.element);
   const Curve& curve = scene_.curve(element.curve);
   const double ratio = IndexRatio(curve.material, met.side);
-  const double most = SinesBetween(beam.directions->At(begin), beam.directions->At(end)) * beam.share * beam.way->tint.Max() * (crosses ? std::max(1.0, 1 / ratio) : 1);
+  const double most = SinesBetween(beam.directions->At(begin), beam.directions->At(end)) * beam.share *
+                      beam.way->tint.Max() * (crosses ? std::max(1.0, 1 / ratio) : 1);
   if (most < options_.least_share) {
     lost_ += most;
     return;

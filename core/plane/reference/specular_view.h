@@ -34,8 +34,8 @@ struct SpecularRay {
   double share = 1;
 };
 
-// Of the direction theta, from the receiver's normal toward its tangent. Absent if it misses a link's line or circle, or
-// is totally reflected where it should cross.
+// Of the direction theta, from the receiver's normal toward its tangent. Absent if it misses a link's line or circle,
+// or is totally reflected where it should cross.
 std::optional<SpecularRay> FollowWay(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
                                      double theta);
 
