@@ -54,14 +54,8 @@ void CheckCaching(const Scene& scene, const Settings& settings, Diagnostics& dia
     diagnostics.Add("settings.samples",
                     "does not apply where records gather from the reference, which draws no samples");
   }
-  if (settings.gather == Gather::kReference && !DirectLightOnly(scene, settings)) {
-    CheckPanels(scene, true, "settings.gather", "from-ray-tracing", diagnostics);
-    if (scene.traits().has_beziers) {
-      diagnostics.Add("settings.gather",
-                      "reference gives no derivatives of light reflected in a scene with Bézier curves: use "
-                      "from-ray-tracing");
-    }
-  }
+  if (settings.gather == Gather::kReference && !DirectLightOnly(scene, settings))
+    CheckPanelDerivatives(scene, "settings.gather", "from-ray-tracing", diagnostics);
   if (settings.target_error) {
     diagnostics.Add("settings.targetError", "does not apply to irradiance-caching: use tolerance or max records");
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/render/panel_plan.h"
 
-#include <algorithm>
+#include <string>
 #include <variant>
 
 #include "core/render/plan_text.h"
@@ -19,19 +19,62 @@ bool PanelsTellAll(const Scene& scene) {
   return traits.lambertian && !traits.has_beziers && traits.elements <= kMostReferencePieces;
 }
 
-void CheckPanels(const Scene& scene, bool reflects, const std::string& path, const std::string& other,
-                 Diagnostics& diagnostics) {
-  if (reflects && !scene.traits().lambertian) {
-    const auto curve = std::find_if(scene.curves().begin(), scene.curves().end(), [](const Curve& c) {
-      return !std::holds_alternative<Lambertian>(c.material) && !c.reflectance.IsBlack();
-    });
-    diagnostics.Add(path, "reference needs a scene that reflects by lambertian materials alone, and curve \"" +
-                              curve->name + "\" has another: use " + other);
+namespace {
+
+void CheckCount(const Scene& scene, const std::string& path, const std::string& other, Diagnostics& diagnostics) {
+  if (scene.traits().elements <= kMostReferencePieces) return;
+  diagnostics.Add(path, "reference does scenes of up to " + Text(kMostReferencePieces) +
+                            " straight and arced pieces, and this one has " + Text(scene.traits().elements) + ": use " +
+                            other);
+}
+
+// Of the first curve that reflects by such a material; empty if there is none.
+template <typename Is>
+std::string NameOfCurve(const Scene& scene, const Is& is) {
+  for (const Curve& curve : scene.curves())
+    if (!curve.reflectance.IsBlack() && is(curve.material)) return curve.name;
+  return {};
+}
+
+bool IsGlossy(const Material& material) {
+  return !std::holds_alternative<Lambertian>(material) && !IsSpecular(material);
+}
+
+}  // namespace
+
+void CheckPanelDerivatives(const Scene& scene, const std::string& path, const std::string& other,
+                           Diagnostics& diagnostics) {
+  const std::string curve =
+      NameOfCurve(scene, [](const Material& material) { return !std::holds_alternative<Lambertian>(material); });
+  if (!scene.traits().lambertian) {
+    diagnostics.Add(path,
+                    "reference gives derivatives in scenes that reflect by lambertian materials alone, and curve "
+                    "\"" +
+                        curve + "\" has another: use " + other);
+  } else if (scene.traits().has_beziers) {
+    diagnostics.Add(path,
+                    "reference gives no derivatives of light reflected in a scene with Bézier curves: use " + other);
   }
-  if (reflects && scene.traits().elements > kMostReferencePieces) {
-    diagnostics.Add(path, "reference does scenes of up to " + Text(kMostReferencePieces) +
-                              " straight and arced pieces, and this one has " + Text(scene.traits().elements) +
-                              ": use " + other);
+  CheckCount(scene, path, other, diagnostics);
+}
+
+void CheckPanels(const Scene& scene, const std::string& path, const std::string& other, Diagnostics& diagnostics) {
+  CheckCount(scene, path, other, diagnostics);
+  if (scene.traits().lambertian) return;
+  const std::string glossy = NameOfCurve(scene, IsGlossy);
+  if (!glossy.empty()) {
+    diagnostics.Add(path, "reference does lambertian, mirror and dielectric materials, and curve \"" + glossy +
+                              "\" has another: use " + other);
+    return;
+  }
+  const std::string specular = NameOfCurve(scene, IsSpecular);
+  if (!scene.lights().empty()) {
+    diagnostics.Add(path, "reference leaves out what plane.lights send over mirrors and glass, and curve \"" +
+                              specular + "\" is one: use " + other);
+  }
+  if (scene.traits().has_beziers) {
+    diagnostics.Add(path, "reference does scenes with Bézier curves where nothing is a mirror or glass, and curve \"" +
+                              specular + "\" is one: use " + other);
   }
 }
 

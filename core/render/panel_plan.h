@@ -13,10 +13,11 @@ namespace flatlight {
 // Whether panels can tell light that a scene reflects, and its derivatives.
 bool PanelsTellAll(const Scene& scene);
 
-// Reports why they cannot tell it. `reflects`: there is any; `path`: of the setting that asks for them; `other`: what
-// to use else.
-void CheckPanels(const Scene& scene, bool reflects, const std::string& path, const std::string& other,
-                 Diagnostics& diagnostics);
+// Both report why they cannot tell it, in a scene that reflects. `path`: of the setting that asks for them; `other`:
+// what to use else. The first asks for derivatives as well.
+void CheckPanelDerivatives(const Scene& scene, const std::string& path, const std::string& other,
+                           Diagnostics& diagnostics);
+void CheckPanels(const Scene& scene, const std::string& path, const std::string& other, Diagnostics& diagnostics);
 
 }  // namespace flatlight
 

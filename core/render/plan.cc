@@ -98,14 +98,28 @@ void RefuseSampling(const Settings& settings, Diagnostics& diagnostics) {
   if (settings.seed.has_value()) diagnostics.Add("settings.seed", reason);
 }
 
+// Of light that is reflected.
+void CheckReferenceDerivatives(const Scene& scene, Diagnostics& diagnostics) {
+  const std::string path = "settings.derivatives", cure = ": leave this out, set max bounces to 0, or use ray-tracing";
+  if (scene.traits().has_beziers) {
+    diagnostics.Add(path, "reference gives none of light reflected in a scene with Bézier curves" + cure);
+  } else if (!scene.traits().lambertian) {
+    diagnostics.Add(path, "reference gives none of light that comes over mirrors and glass" + cure);
+  }
+}
+
 void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   RefuseSampling(settings, diagnostics);
-  CheckPanels(scene, !DirectLightOnly(scene, settings), "settings.method", "path-tracing", diagnostics);
-  if (!DirectLightOnly(scene, settings) && scene.traits().has_beziers &&
-      settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone) {
-    diagnostics.Add("settings.derivatives",
-                    "reference gives none of light reflected in a scene with Bézier curves: leave this out, set max "
-                    "bounces to 0, or use ray-tracing");
+  if (!DirectLightOnly(scene, settings)) {
+    CheckPanels(scene, "settings.method", "path-tracing", diagnostics);
+    if (settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone)
+      CheckReferenceDerivatives(scene, diagnostics);
+    if (settings.max_bounces && !scene.traits().lambertian) {
+      diagnostics.Add("settings.maxBounces",
+                      "is " + Text(*settings.max_bounces) +
+                          ", but over mirrors and through glass reference counts all bounces: leave this out, set it "
+                          "to 0, or use path-tracing");
+    }
   }
   CheckFading(scene, settings, diagnostics);
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/math/trig.h"
+#include "core/plane/chains/beam_cuts.h"
 #include "core/plane/intersect.h"
 
 namespace flatlight {
@@ -15,50 +16,6 @@ namespace {
 
 // Blockers that are cut out of one stretch, one within the other; what is left then counts as free.
 constexpr int kMostCuts = 24;
-// Shorter stretches, as fractions of a piece, are nothing.
-constexpr double kLeastStretch = 1e-13;
-
-class Cuts {
- public:
-  Cuts(double begin, double end) : at_{begin, end} {}
-
-  void AddRoots(const LineFamily& lines, const Bernstein& f) {
-    const Bernstein::RootList roots = f.Roots();
-    for (std::size_t i = 0; i < roots.count; ++i) {
-      const double u = lines.At(roots.t[i]);
-      if (u > at_[0] && u < at_[1]) at_.push_back(u);
-    }
-  }
-  // Where rays begin or cease to meet an element.
-  void AddEndsOf(const Element& element, const LineFamily& lines) {
-    AddRoots(lines, lines.LeftOf(element.a));
-    AddRoots(lines, lines.LeftOf(element.b));
-    if (element.kind == Element::Kind::kSegment) return;
-    AddRoots(lines, lines.LeftOf(element.center, element.radius));
-    AddRoots(lines, lines.LeftOf(element.center, -element.radius));
-  }
-  template <typename Visit>
-  void VisitStretches(Visit visit) {
-    std::sort(at_.begin(), at_.end());
-    for (std::size_t i = 0; i + 1 < at_.size(); ++i)
-      if (at_[i + 1] - at_[i] > kLeastStretch) visit(at_[i], at_[i + 1]);
-  }
-
- private:
-  std::vector<double> at_;
-};
-
-bool OneSign(const Bernstein& f) { return f.Min() > 0 || f.Max() < 0; }
-
-// Whether no line of a family meets an element.
-bool PassBy(const LineFamily& lines, const Element& element) {
-  const Bernstein a = lines.LeftOf(element.a), b = lines.LeftOf(element.b);
-  if (!OneSign(a) || !OneSign(b) || (a.b[0] > 0) != (b.b[0] > 0)) return false;
-  if (element.kind == Element::Kind::kSegment) return true;
-  const Bernstein center = lines.LeftOf(element.center);
-  return center.Min() > element.radius || center.Max() < -element.radius;
-}
-
 DirectedLine LineOf(const RaySeries<2>& ray) {
   const Vector2 direction = ray.direction.Value();
   return {direction, Cross(direction, ray.from.Value())};

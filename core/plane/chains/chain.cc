@@ -48,9 +48,35 @@ std::optional<ChainRays<n>> Begin(const Light& light, const Element& first, doub
   return rays;
 }
 
-// Reflection on the last place's curve or passage through it.
 template <std::size_t n>
-bool Turn(const Scene& scene, const ChainLink& link, ChainRays<n>& rays) {
+std::optional<ChainRays<n>> Follow(const Scene& scene, const Chain& chain, double u, bool turns_at_last,
+                                   std::vector<SurfacePoint>* places) {
+  const Element& first = scene.element(chain.links[0].element);
+  std::optional<ChainRays<n>> rays = Begin<n>(*chain.light, first, u);
+  if (!rays) return std::nullopt;
+  for (std::size_t i = 0; i < chain.links.size(); ++i) {
+    const ChainLink& link = chain.links[i];
+    const bool last = i + 1 == chain.links.size();
+    if (last && !turns_at_last) return rays;
+    if (i == 0) {
+      rays->ray.from = PlaceOn<n>(first, u);
+    } else {
+      const Element& element = scene.element(link.element);
+      const bool own = element.carrier == scene.element(chain.links[i - 1].element).carrier;
+      const std::optional<Series<n>> distance = DistanceTo(element, rays->ray, link.far, own);
+      if (!distance) return std::nullopt;
+      rays->ray.from = rays->ray.from + *distance * rays->ray.direction;
+    }
+    if (places != nullptr) places->push_back({Point2{} + rays->ray.from.Value(), link.element});
+    if (!TurnAt(scene, link, *rays)) return std::nullopt;
+  }
+  return rays;
+}
+
+}  // namespace
+
+template <std::size_t n>
+bool TurnAt(const Scene& scene, const ChainLink& link, ChainRays<n>& rays) {
   const Element& element = scene.element(link.element);
   const Curve& curve = scene.curve(element.curve);
   VectorSeries<n> normal = FrontOn(element, rays.ray.from);
@@ -84,33 +110,6 @@ bool Turn(const Scene& scene, const ChainLink& link, ChainRays<n>& rays) {
 }
 
 template <std::size_t n>
-std::optional<ChainRays<n>> Follow(const Scene& scene, const Chain& chain, double u, bool turns_at_last,
-                                   std::vector<SurfacePoint>* places) {
-  const Element& first = scene.element(chain.links[0].element);
-  std::optional<ChainRays<n>> rays = Begin<n>(*chain.light, first, u);
-  if (!rays) return std::nullopt;
-  for (std::size_t i = 0; i < chain.links.size(); ++i) {
-    const ChainLink& link = chain.links[i];
-    const bool last = i + 1 == chain.links.size();
-    if (last && !turns_at_last) return rays;
-    if (i == 0) {
-      rays->ray.from = PlaceOn<n>(first, u);
-    } else {
-      const Element& element = scene.element(link.element);
-      const bool own = element.carrier == scene.element(chain.links[i - 1].element).carrier;
-      const std::optional<Series<n>> distance = DistanceTo(element, rays->ray, link.far, own);
-      if (!distance) return std::nullopt;
-      rays->ray.from = rays->ray.from + *distance * rays->ray.direction;
-    }
-    if (places != nullptr) places->push_back({Point2{} + rays->ray.from.Value(), link.element});
-    if (!Turn(scene, link, *rays)) return std::nullopt;
-  }
-  return rays;
-}
-
-}  // namespace
-
-template <std::size_t n>
 std::optional<ChainRays<n>> FollowChain(const Scene& scene, const Chain& chain, double u,
                                         std::vector<SurfacePoint>* places) {
   return Follow<n>(scene, chain, u, true, places);
@@ -121,6 +120,9 @@ std::optional<ChainRays<n>> FollowChainToLast(const Scene& scene, const Chain& c
   return Follow<n>(scene, chain, u, false, nullptr);
 }
 
+template bool TurnAt(const Scene&, const ChainLink&, ChainRays<1>&);
+template bool TurnAt(const Scene&, const ChainLink&, ChainRays<2>&);
+template bool TurnAt(const Scene&, const ChainLink&, ChainRays<4>&);
 template std::optional<ChainRays<2>> FollowChain(const Scene&, const Chain&, double, std::vector<SurfacePoint>*);
 template std::optional<ChainRays<4>> FollowChain(const Scene&, const Chain&, double, std::vector<SurfacePoint>*);
 template std::optional<ChainRays<2>> FollowChainToLast(const Scene&, const Chain&, double);

@@ -8,18 +8,13 @@
 #include <optional>
 #include <vector>
 
+#include "core/plane/chains/chain_link.h"
 #include "core/plane/chains/ray_series.h"
 #include "core/plane/ray_caster.h"
 #include "core/scene/light.h"
 #include "core/scene/scene.h"
 
 namespace flatlight {
-
-struct ChainLink {
-  ElementId element = ElementId::kNone;
-  bool far = false;      // Met where a ray leaves its circle, not where it enters it.
-  bool crosses = false;  // Light goes through, and is not reflected.
-};
 
 struct Chain {
   const Light* light = nullptr;
@@ -35,6 +30,11 @@ struct ChainRays {
   Series<n> flux;
   Spectrum colour;
 };
+
+// Reflection on a link's curve, at the place from which the rays start, or passage through it. Returns false where they
+// should cross and are totally reflected.
+template <std::size_t n>
+bool TurnAt(const Scene& scene, const ChainLink& link, ChainRays<n>& rays);
 
 // Light by way of the place u of the first link, behind the last one. Absent if a ray misses a link's line or circle,
 // or is totally reflected where it should cross. `places`: filled with where it meets the links; may be null.

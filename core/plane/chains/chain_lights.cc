@@ -99,7 +99,8 @@ ChainLights::Level ChainLights::MakeLevel(std::vector<std::size_t> open, double 
 void ChainLights::AddFrom(const Beam& beam, const SurfacePoint& at, Vector2 normal, double& rays,
                           std::vector<Found>& found) const {
   const Bernstein left = beam.lines.LeftOf(at.position);
-  if (left.Min() > LineFamily::kFitTolerance || left.Max() < -LineFamily::kFitTolerance) return;
+  const double tolerance = LineFit().tolerance;
+  if (left.Min() > tolerance || left.Max() < -tolerance) return;
   const Bernstein::RootList roots = left.Roots();
   if (roots.count == 0) return;
   const Element& last = scene_.element(beam.chain->links.back().element);

@@ -19,9 +19,14 @@ struct DirectedLine {
   double moment = 0;
 };
 
-// Lines that depend smoothly on a number between begin and end, to kFitTolerance.
+// How well families follow their lines.
+struct LineFit {
+  double tolerance = 1e-11;     // Of directions and moments.
+  double least_part = 0x1p-20;  // Of the whole; shorter pieces are not made smoother.
+};
+
+// Lines that depend smoothly on a number between begin and end.
 struct LineFamily {
-  static constexpr double kFitTolerance = 1e-11;
   // Neighbouring families overlap by so much on either side, so that no line between them is lost by rounding.
   static constexpr double kOverlap = 1e-12;
 
@@ -39,20 +44,19 @@ struct LineFamily {
 
   // The family of line(u) over the numbers from begin to end, in as many pieces as it takes to be smooth; calls
   // emit(LineFamily). Where line(u) is absent at a node, pieces are halved as long as
-  // hopeful(begin, end) says that they may hold something. Pieces of kLeastPart of the whole are given up, or taken as
-  // they are: near a number where lines turn without bound, as at total reflection.
+  // hopeful(begin, end) says that they may hold something. Pieces of fit.least_part of the whole are given up, or taken
+  // as they are: near a number where lines turn without bound, as at total reflection.
   template <typename Line, typename Hopeful, typename Emit>
-  static void Fit(double begin, double end, const Line& line, const Hopeful& hopeful, const Emit& emit) {
-    const double least = std::max(kLeastPart * (end - begin), 16 * kOverlap);
-    FitPart(begin - kOverlap, end + kOverlap, least, line, hopeful, emit);
+  static void Fit(double begin, double end, const Line& line, const Hopeful& hopeful, const Emit& emit,
+                  const LineFit& fit = {}) {
+    const double least = std::max(fit.least_part * (end - begin), 16 * kOverlap);
+    FitPart(begin - kOverlap, end + kOverlap, least, fit.tolerance, line, hopeful, emit);
   }
 
  private:
-  static constexpr double kLeastPart = 0x1p-20;
-
   template <typename Line, typename Hopeful, typename Emit>
-  static void FitPart(double begin, double end, double least, const Line& line, const Hopeful& hopeful,
-                      const Emit& emit) {
+  static void FitPart(double begin, double end, double least, double tolerance, const Line& line,
+                      const Hopeful& hopeful, const Emit& emit) {
     LineFamily family;
     family.begin = begin, family.end = end;
     std::array<double, Bernstein::kCount> x{}, y{}, moment{};
@@ -65,23 +69,22 @@ struct LineFamily {
     const bool small = end - begin <= least;
     if (whole) {
       family.x = Bernstein::Through(x), family.y = Bernstein::Through(y), family.moment = Bernstein::Through(moment);
-      if (small || family.Fits(line)) return emit(family);
+      if (small || family.Fits(line, tolerance)) return emit(family);
     } else if (small || !hopeful(begin, end)) {
       return;
     }
     const double middle = 0.5 * (begin + end);
-    FitPart(begin, middle + kOverlap, least, line, hopeful, emit);
-    FitPart(middle - kOverlap, end, least, line, hopeful, emit);
+    FitPart(begin, middle + kOverlap, least, tolerance, line, hopeful, emit);
+    FitPart(middle - kOverlap, end, least, tolerance, line, hopeful, emit);
   }
 
   template <typename Line>
-  bool Fits(const Line& line) const {
+  bool Fits(const Line& line, double tolerance) const {
     for (const double t : {0.0, 0.0301536896, 0.32898992833716567, 0.58682408883346, 0.93301270189221941, 1.0}) {
       const std::optional<DirectedLine> at = line(At(t));
       if (!at) return false;
-      if (!(std::abs(x.At(t) - at->direction.x) <= kFitTolerance) ||
-          !(std::abs(y.At(t) - at->direction.y) <= kFitTolerance) ||
-          !(std::abs(moment.At(t) - at->moment) <= kFitTolerance)) {
+      if (!(std::abs(x.At(t) - at->direction.x) <= tolerance) || !(std::abs(y.At(t) - at->direction.y) <= tolerance) ||
+          !(std::abs(moment.At(t) - at->moment) <= tolerance)) {
         return false;
       }
     }

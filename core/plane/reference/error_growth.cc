@@ -20,9 +20,10 @@ constexpr double kLeastSource = 1e-12;
 
 }  // namespace
 
-ErrorGrowth::ErrorGrowth(const std::vector<Row>& rows, std::vector<double> source, std::vector<double> half_reflectance,
-                         std::optional<std::uint32_t> bounces)
+ErrorGrowth::ErrorGrowth(const std::vector<Row>& rows, std::size_t channel, std::vector<double> source,
+                         std::vector<double> half_reflectance, std::optional<std::uint32_t> bounces)
     : rows_(rows),
+      channel_(channel),
       source_(std::move(source)),
       half_(std::move(half_reflectance)),
       bounces_(bounces.value_or(0)),
@@ -42,7 +43,8 @@ void ErrorGrowth::Look(std::size_t i) {
   for (std::size_t r = i * kNodes; r < (i + 1) * kNodes; ++r) {
     const Row& row = rows_[r];
     double sum = 0;
-    for (std::size_t e = 0; e < row.panels.size(); ++e) sum += row.low[e * kNodes] * bounds_[row.panels[e]];
+    for (std::size_t e = 0; e < row.panels.size(); ++e)
+      sum += row.Tint(e, channel_) * row.low[e * kNodes] * bounds_[row.panels[e]];
     const double wanted = source_[r] + half_[i] * sum;
     if (wanted > equation.wanted) equation.wanted = wanted, worst = r;
     const double lack = wanted - bounds_[i];
@@ -53,7 +55,7 @@ void ErrorGrowth::Look(std::size_t i) {
   equation.source = source_[worst];
   equation.panels = row.panels;
   equation.shares.resize(row.panels.size());
-  for (std::size_t e = 0; e < row.panels.size(); ++e) equation.shares[e] = row.low[e * kNodes];
+  for (std::size_t e = 0; e < row.panels.size(); ++e) equation.shares[e] = row.Tint(e, channel_) * row.low[e * kNodes];
 }
 
 // w/(1 - l) is a bound if no node lacks more than the part l of its source.

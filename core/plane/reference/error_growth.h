@@ -23,9 +23,9 @@ class ErrorGrowth {
   // Runs work(0) ... work(count - 1).
   using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
 
-  // `rows` and `source` by panel, then node; rho/2 by panel. Both references must outlive this.
-  ErrorGrowth(const std::vector<Row>& rows, std::vector<double> source, std::vector<double> half_reflectance,
-              std::optional<std::uint32_t> bounces);
+  // `rows` and `source` by panel, then node; rho/2 by panel. The rows must outlive this.
+  ErrorGrowth(const std::vector<Row>& rows, std::size_t channel, std::vector<double> source,
+              std::vector<double> half_reflectance, std::optional<std::uint32_t> bounces);
 
   // Goes step by step; returns whether the bounds are there.
   bool Step(const Loop& loop);
@@ -45,6 +45,7 @@ class ErrorGrowth {
   bool Raise();
 
   const std::vector<Row>& rows_;
+  std::size_t channel_;
   std::vector<double> source_, half_;
   std::uint32_t bounces_ = 0;  // Still to come.
   bool all_bounces_;

@@ -78,7 +78,8 @@ PanelMesh GradedMesh(const Scene& scene, const std::vector<std::vector<double>>&
   std::vector<Panel> panels;
   for (std::size_t i = 0; i < meetings.size(); ++i) {
     const auto id = static_cast<ElementId>(i);
-    if (scene.curve_of(id).reflectance.IsBlack()) continue;
+    const Curve& curve = scene.curve_of(id);
+    if (curve.reflectance.IsBlack() || IsSpecular(curve.material)) continue;
     std::vector<double> cuts(1, 0.0);
     double from = 0;
     bool at_from = false;

@@ -56,7 +56,7 @@ Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, 
       first_residual_(mesh_.size(), channels, kResidualCoefficients),
       rounding_(mesh_.size() * channels),
       spread_(mesh_.size() * kNodes * channels) {
-  FLATLIGHT_DCHECK(mesh_.size() == 0 || (scene_.traits().lambertian && max_bounces != 0u));
+  FLATLIGHT_DCHECK(mesh_.size() == 0 || (CanFollow(scene_) && max_bounces != 0u));
   for (std::size_t c = 0; before && !max_bounces && c < channels; ++c) start_.push_back(before->OnNodesOf(mesh_, c));
   if (before) rows_before_ = std::move(before->rows_);
   for (std::size_t i = 0; i < mesh_.size(); ++i) {
@@ -76,12 +76,17 @@ Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, 
 }
 
 std::size_t Radiosity::memory() const {
-  std::size_t entries = 0, high_entries = 0;
-  for (const Row& row : rows_.nodes) high_entries += row.panels.size();
-  for (const Row& row : rows_.between) entries += row.panels.size();
+  std::size_t entries = 0, high_entries = 0, specular_bytes = 0;
+  const auto add = [&](const Row& row, std::size_t& to) {
+    to += row.panels.size();
+    specular_bytes +=
+        row.tints.size() * (sizeof(Spectrum) + sizeof(std::uint32_t)) + row.specular.size() * sizeof(SpecularPiece);
+  };
+  for (const Row& row : rows_.nodes) add(row, high_entries);
+  for (const Row& row : rows_.between) add(row, entries);
   for (const std::vector<Row>& rows : rows_.cells)
-    for (const Row& row : rows) entries += row.panels.size();
-  return (entries + high_entries) * (kNodes * sizeof(double) + sizeof(std::uint32_t)) +
+    for (const Row& row : rows) add(row, entries);
+  return (entries + high_entries) * (kNodes * sizeof(double) + sizeof(std::uint32_t)) + specular_bytes +
          high_entries * (kResidualCoefficients - kNodes + (positive_.empty() ? 0 : kNodes)) * sizeof(float);
 }
 
@@ -131,7 +136,7 @@ void Radiosity::Transport(const Loop& loop, std::size_t channel, const Values& c
       const Row& row = rows_.nodes[r];
       double sum = 0;
       for (std::size_t p = 0; p < row.panels.size(); ++p)
-        sum += row.TimesLight(p, &coefficients[row.panels[p] * kNodes]);
+        sum += row.Tint(p, channel) * row.TimesLight(p, &coefficients[row.panels[p] * kNodes]);
       out[r] = HalfReflectance(i, channel) * sum;
     }
   });
@@ -162,8 +167,12 @@ void Radiosity::TransportPositive(const Loop& loop, std::size_t channel, const V
       const Row& row = rows_.nodes[r];
       const float* weight = positive_[r].data();
       double sum = 0;
-      for (const std::uint32_t p : row.panels)
-        for (std::size_t n = 0; n < kNodes; ++n) sum += static_cast<double>(*weight++) * values[p * kNodes + n];
+      for (std::size_t e = 0; e < row.panels.size(); ++e) {
+        const double* from = &values[row.panels[e] * kNodes];
+        double of_panel = 0;
+        for (std::size_t n = 0; n < kNodes; ++n) of_panel += static_cast<double>(*weight++) * from[n];
+        sum += row.Tint(e, channel) * of_panel;
+      }
       out[r] = HalfReflectance(i, channel) * sum;
     }
   });
@@ -233,7 +242,11 @@ bool Radiosity::Solve(const Loop& loop) {
   for (std::size_t r = 0; r < rows_.nodes.size(); ++r) {
     double& brightest = brightest_[r / kNodes * channels_ + c];
     brightest = std::max(brightest, std::abs(accumulation_->values()[r]));
+    errors_.brightest.value[c] = std::max(errors_.brightest.value[c], brightest);
   }
+  for (const Curve& curve : scene_.curves())
+    errors_.brightest.value[c] = std::max(errors_.brightest.value[c], curve.radiance.value[c]);
+  errors_.brightest.value[c] = std::max(errors_.brightest.value[c], scene_.environment().value[c]);
   keep(accumulation_->values(), light_);
   keep(accumulation_->before(), before_);
   keep(source(), first_);
@@ -251,12 +264,12 @@ void Radiosity::CheckAt(std::size_t i, const Row& row, const double* p, std::siz
   double sum = 0, size = direct, brightest = row.brightest.value[c];
   for (std::size_t e = 0; e < row.panels.size(); ++e) {
     const double* light = before_.Of(row.panels[e], c);
-    sum += row.TimesLight(e, light);
-    size += row.low[e * kNodes] * std::abs(light[0]);
+    sum += row.Tint(e, c) * row.TimesLight(e, light);
+    size += row.Tint(e, c) * row.low[e * kNodes] * std::abs(light[0]);
     brightest = std::max(brightest, brightest_[row.panels[e] * channels_ + c]);
   }
   residual = half * (direct + sum) - light_.At(i, c, p);
-  rounding = half * (kRounding * size + row.coordinates * brightest);
+  rounding = half * (kRounding * size + row.coordinates * brightest + row.lost * errors_.brightest.value[c]);
 }
 
 void Radiosity::Check(std::size_t i) {
@@ -337,9 +350,10 @@ void Radiosity::Spread(std::size_t i) {
       const Row& row = rows_.nodes[r];
       ErrorSum all, of_first;
       for (std::size_t p = 0; p < row.panels.size(); ++p) {
-        const double missed = errors_.Missed(row.panels[p] * channels_ + c, &row.low[p * kNodes]);
-        all.Add(row.Times(p, errors_.residual.Of(row.panels[p], c)), missed);
-        if (max_bounces_) of_first.Add(row.Times(p, first_residual_.Of(row.panels[p], c)), missed);
+        const double tint = row.Tint(p, c);
+        const double missed = tint * errors_.Missed(row.panels[p] * channels_ + c, &row.low[p * kNodes]);
+        all.Add(tint * row.Times(p, errors_.residual.Of(row.panels[p], c)), missed);
+        if (max_bounces_) of_first.Add(tint * row.Times(p, first_residual_.Of(row.panels[p], c)), missed);
       }
       spread_[r * channels_ + c] = HalfReflectance(i, c) * std::max(all.total(), of_first.total());
     }
@@ -377,7 +391,7 @@ bool Radiosity::Bound(const Loop& loop) {
     if (!growth_) {
       Values half(mesh_.size());
       for (std::size_t i = 0; i < mesh_.size(); ++i) half[i] = HalfReflectance(i, c);
-      growth_.emplace(rows_.nodes, source(), std::move(half), max_bounces_);
+      growth_.emplace(rows_.nodes, c, source(), std::move(half), max_bounces_);
     }
     if (!growth_->Step(loop)) return false;
     for (std::size_t i = 0; i < mesh_.size(); ++i) errors_.value[i * channels_ + c] = growth_->bounds()[i];
@@ -398,7 +412,7 @@ std::vector<double> Radiosity::Influence() const {
       for (std::size_t c = 0; c < channels_; ++c) {
         const double missed = errors_.Missed(row.panels[p] * channels_ + c, &row.low[p * kNodes]);
         const double off = std::abs(row.Times(p, errors_.residual.Of(row.panels[p], c))) + missed;
-        most = std::max(most, HalfReflectance(i, c) * off);
+        most = std::max(most, HalfReflectance(i, c) * row.Tint(p, c) * off);
       }
       influence[row.panels[p]] += weight * most;
     }

@@ -35,7 +35,7 @@ class Radiosity {
   // Runs work(0) ... work(count - 1).
   using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
 
-  // Requires reflection by Lambertian curves alone, and max_bounces != 0 (absent: all), if there are panels. Only the
+  // Requires CanFollow(scene), and max_bounces != 0 (absent: all), if there are panels. Only the
   // first `channels` are computed. The caster, the charts and the events must outlive this.
   // `tolerance`: to which the equations at the nodes are solved, of their right sides; what is left over is part of the
   // bound. Rows of the mesh that this one was made of save most of the work for new ones, and its light is the guess

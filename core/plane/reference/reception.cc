@@ -47,6 +47,7 @@ Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const Pa
   end_errors_ = EndErrors(scene_);
   for (const VisiblePiece& piece : outlook_.From(receiver))
     AddPiece(receiver, mesh, light, errors, derivatives, piece, sum);
+  if (specular_) AddSpecular(receiver, mesh, light, errors, sum);
   for (std::size_t c = 0; c < light.channels(); ++c) {
     for (int m = 0; m <= derivatives; ++m) sum.error[m].value[c] += of_residuals_[m][c].total();
     sum.rounding[0].value[c] += end_errors_.joints();
@@ -114,6 +115,42 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
   }
   AddEnd(receiver, mesh, light, errors, derivatives, piece, false, sum);
   AddEnd(receiver, mesh, light, errors, derivatives, piece, true, sum);
+}
+
+void Reception::AddSpecular(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
+                            const LightErrors* errors, Received& sum) {
+  const std::size_t channels = light.channels();
+  SpecularView& view = specular_->view();
+  const std::vector<SpecularPiece>& pieces = view.From(receiver);
+  double uncertain = view.lost();
+  for (const SpecularPiece& piece : pieces) {
+    const Spectrum& tint = piece.way->tint;
+    const Spectrum emitted = EmittedBy(scene_, piece);
+    if (!emitted.IsBlack()) {
+      const SpecularGather::Moments moments = specular_->OfPiece(receiver, piece);
+      sum.value[0] = sum.value[0] + moments.value[0] * (tint * emitted);
+      uncertain += moments.error;
+    }
+    const std::size_t count = errors ? kResidualCoefficients : kLightCoefficients;
+    specular_->OfPanels(receiver, piece, mesh, count, [&](std::size_t i, const auto& moments_of) {
+      const SpecularGather::Moments moments = moments_of();
+      uncertain += moments.error;
+      double share = 0;
+      for (std::size_t c = 0; c < channels; ++c) {
+        sum.value[0].value[c] += tint.value[c] * light.At(i, c, moments.value.data());
+        if (!errors) continue;
+        const double off = tint.value[c] * errors->residual.At(i, c, moments.value.data());
+        const double missed = tint.value[c] * errors->Missed(i * channels + c, moments.value.data());
+        of_residuals_[0][c].Add(off, missed);
+        sum.error[0].value[c] += tint.value[c] * moments.value[0] * errors->value[i * channels + c];
+        share = std::max(share, std::abs(off) + missed);
+      }
+      if (errors) shares_.emplace_back(i, share);
+    });
+  }
+  if (!errors) return;
+  for (std::size_t c = 0; c < channels; ++c)
+    sum.rounding[0].value[c] += uncertain * errors->brightest.value[c] + kRounding * std::abs(sum.value[0].value[c]);
 }
 
 // A moving end: d/dx of the integral up to it.

@@ -4,6 +4,7 @@
 #define FLATLIGHT_CORE_PLANE_REFERENCE_RECEPTION_H_
 
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "core/plane/reference/panel_light.h"
 #include "core/plane/reference/panel_mesh.h"
 #include "core/plane/reference/row.h"
+#include "core/plane/reference/specular_gather.h"
 #include "core/plane/reference/stretch.h"
 #include "core/scene/spectrum.h"
 
@@ -27,6 +29,7 @@ struct LightErrors {
   // Bounds on how far the true light is from that reflection: by panel, then channel.
   std::vector<double> value;
   std::vector<double> slope;  // Of its derivative by arc length.
+  Spectrum brightest;         // The largest radiance anywhere.
 
   // What a receiver gets of what is missed, at most. `weights`: integrals of what it weighs the panel with, which is
   // not negative, times Legendre polynomials, kLightCoefficients of them.
@@ -44,14 +47,19 @@ struct Received {
 // Holds working memory: one for each thread.
 class Reception {
  public:
-  Reception(const RayCaster& caster, const std::vector<Chart>& charts)
+  // `specular`: absent where nothing is a mirror or glass.
+  Reception(const RayCaster& caster, const std::vector<Chart>& charts,
+            const std::optional<SpecularViewOptions>& specular)
       : scene_(caster.scene()),
         charts_(charts),
         count_(kLightCoefficients + 2, kKernelDigits),
         outlook_(caster, charts),
-        end_errors_(caster.scene()) {}
+        end_errors_(caster.scene()) {
+    if (specular) specular_.emplace(caster, charts, *specular);
+  }
 
-  // `errors` may be null. `derivatives` 0, 1 or 2.
+  // What panels reflect and, over mirrors and through glass, what emits. `errors` may be null. `derivatives` 0, 1 or 2;
+  // those of light over mirrors and through glass are left out.
   Received At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
               int derivatives);
   // What each panel's residual adds to the error of irradiance in the channel where it is largest, at the receiver of
@@ -61,6 +69,8 @@ class Reception {
  private:
   void AddPiece(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
                 int derivatives, const VisiblePiece& piece, Received& sum);
+  void AddSpecular(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
+                   Received& sum);
   void AddEnd(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
               int derivatives, const VisiblePiece& piece, bool is_end, Received& sum);
 
@@ -68,6 +78,7 @@ class Reception {
   const std::vector<Chart>& charts_;
   PointCount count_;
   Outlook outlook_;
+  std::optional<SpecularGather> specular_;
   std::vector<std::pair<std::size_t, double>> shares_;
   ErrorSum of_residuals_[3][kMaxChannels];  // By derivative.
   EndErrors end_errors_;

@@ -59,6 +59,16 @@ std::unique_ptr<SolvedWorld> NewWorld(std::shared_ptr<const RayCaster> caster, c
   return world;
 }
 
+// Of what is seen over mirrors and through glass, beside the error that is wanted.
+constexpr double kSpecularShare = 1e-3;
+
+std::optional<SpecularViewOptions> SpecularOptions(const Scene& world, const ReferenceOptions& options) {
+  if (IsDirectLight(world, options) || !HasSpecular(world)) return std::nullopt;
+  SpecularViewOptions of_view;
+  of_view.least_share = std::clamp(kSpecularShare * options.target_error, 1e-13, 1e-6);
+  return of_view;
+}
+
 double Relative(double error, double size) {
   return error == 0 ? 0 : size > 0 ? error / size : std::numeric_limits<double>::infinity();
 }
@@ -67,8 +77,11 @@ double Relative(double error, double size) {
 
 // Working memory of a thread.
 struct ReferenceSolver::Worker {
-  Worker(const RayCaster& caster, const std::vector<Chart>& charts, const ExactOptions& options)
-      : rows(caster, charts), reception(caster, charts), exact(caster.scene(), caster.bvh(), options) {}
+  Worker(const RayCaster& caster, const std::vector<Chart>& charts, const std::optional<SpecularViewOptions>& specular,
+         const ExactOptions& options)
+      : rows(caster, charts, specular),
+        reception(caster, charts, specular),
+        exact(caster.scene(), caster.bvh(), options) {}
 
   RowBuilder rows;
   Reception reception;
@@ -132,7 +145,7 @@ std::unique_ptr<ReferenceSolver::Worker> ReferenceSolver::Take() {
       return worker;
     }
   }
-  return std::make_unique<Worker>(*world_->caster, world_->charts,
+  return std::make_unique<Worker>(*world_->caster, world_->charts, SpecularOptions(world_->caster->scene(), options_),
                                   ExactOptions{.derivatives = options_.derivatives, .channels = options_.channels});
 }
 

@@ -50,6 +50,10 @@ void RowBuilder::Build(const PanelMesh& mesh, const Receiver& receiver, bool hig
   row.low.clear();
   row.high.clear();
   row.stretches.clear();
+  row.specular.clear();
+  row.tints.clear();
+  row.pieces.clear();
+  row.lost = 0;
   before_ = before;
   next_before_ = 0;
   if (before) {
@@ -57,6 +61,8 @@ void RowBuilder::Build(const PanelMesh& mesh, const Receiver& receiver, bool hig
     row.coordinates = before->coordinates;
     row.direct = before->direct;
     row.brightest = before->brightest;
+    row.specular = std::move(before->specular);
+    row.lost = before->lost;
   } else {
     row.coordinates = 0;
     row.brightest = scene_.environment();
@@ -78,27 +84,71 @@ void RowBuilder::Build(const PanelMesh& mesh, const Receiver& receiver, bool hig
         row.coordinates += 4 * on->tilt;
     }
     row.direct = outlook_.Direct(receiver);
+    if (specular_) AddEmission(receiver, row);
   }
   const std::size_t expected = before ? before->panels.size() + before->panels.size() / 4 : 2 * row.stretches.size();
   row.panels.reserve(expected);
   row.low.reserve(expected * kLightCoefficients);
   if (high) row.high.reserve(expected * (kResidualCoefficients - kLightCoefficients));
   for (const Row::Stretch& stretch : row.stretches) AddStretch(mesh, receiver, stretch, high, row);
+  if (specular_) AddSpecular(mesh, receiver, high, row);
   if (before) *before = {};
 }
 
-bool RowBuilder::Copy(const Panel& panel, bool high, Row& row) {
+void RowBuilder::AddEmission(const Receiver& receiver, Row& row) {
+  SpecularView& view = specular_->view();
+  row.specular = view.From(receiver);
+  row.lost = view.lost();
+  for (const SpecularPiece& piece : row.specular) {
+    const Spectrum emitted = EmittedBy(scene_, piece);
+    if (emitted.IsBlack()) continue;
+    const SpecularGather::Moments moments = specular_->OfPiece(receiver, piece);
+    row.direct = row.direct + moments.value[0] * (piece.way->tint * emitted);
+    row.coordinates += moments.error;
+    for (int c = 0; c < kMaxChannels; ++c) row.brightest[c] = std::max(row.brightest[c], emitted[c]);
+  }
+}
+
+void RowBuilder::AddSpecular(const PanelMesh& mesh, const Receiver& receiver, bool high, Row& row) {
+  const std::size_t count = high ? kResidualCoefficients : kLightCoefficients;
+  row.tints.assign(row.panels.size(), Spectrum::Grey(1));
+  row.pieces.assign(row.panels.size(), 0);
+  std::uint32_t number = 0;
+  for (const SpecularPiece& piece : row.specular) {
+    ++number;
+    specular_->OfPanels(receiver, piece, mesh, count, [&](std::size_t i, const auto& moments_of) {
+      row.panels.push_back(static_cast<std::uint32_t>(i));
+      row.tints.push_back(piece.way->tint);
+      row.pieces.push_back(number);
+      if (Copy(mesh.panels()[i], number, high, row)) return;
+      const SpecularGather::Moments moments = moments_of();
+      AddEntry(moments.value.data(), count, row);
+      row.coordinates += moments.error;
+    });
+  }
+}
+
+void RowBuilder::AddEntry(const double* moments, std::size_t count, Row& row) const {
+  row.low.insert(row.low.end(), moments, moments + kLightCoefficients);
+  for (std::size_t k = kLightCoefficients; k < count; ++k) row.high.push_back(static_cast<float>(moments[k]));
+}
+
+bool RowBuilder::Copy(const Panel& panel, std::uint32_t piece, bool high, Row& row) {
   if (!before_ || panel.before == Panel::kNew) return false;
-  std::size_t& p = next_before_;
-  while (p < before_->panels.size() && before_->panels[p] != panel.before) ++p;
-  FLATLIGHT_DCHECK(p < before_->panels.size());
+  std::size_t p = next_before_;
+  const auto is_before = [&](std::size_t i) {
+    return before_->panels[i] == panel.before && (before_->pieces.empty() || before_->pieces[i] == piece);
+  };
+  while (p < before_->panels.size() && !is_before(p)) ++p;
+  FLATLIGHT_DCHECK(p < before_->panels.size() || piece > 0);
+  if (p == before_->panels.size()) return false;  // Rounding cut a specular piece in another way.
+  next_before_ = p + 1;
   const auto copy = [p](const auto& from, std::size_t count, auto& to) {
     const auto begin = from.begin() + static_cast<std::ptrdiff_t>(p * count);
     to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
   };
   copy(before_->low, kLightCoefficients, row.low);
   if (high) copy(before_->high, kResidualCoefficients - kLightCoefficients, row.high);
-  ++p;
   return true;
 }
 
@@ -134,7 +184,7 @@ void RowBuilder::AddStretch(const PanelMesh& mesh, const Receiver& receiver, con
     const double from = std::max(stretch.low, panel.low), to = std::min(stretch.high, panel.high);
     if (!(from < to)) break;
     row.panels.push_back(static_cast<std::uint32_t>(i));
-    if (Copy(panel, high, row)) continue;
+    if (Copy(panel, 0, high, row)) continue;
     double moments[kResidualCoefficients] = {};
     const bool whole = from == panel.low && to == panel.high && radius == 0;
     const double roundness = whole ? chart.Roundness(receiver.position, from, to) : 0;
@@ -154,8 +204,7 @@ void RowBuilder::AddStretch(const PanelMesh& mesh, const Receiver& receiver, con
       };
       ForEachPoint(chart, receiver.position, radius != 0, high ? high_count_ : count_, from, to, 0, add, rest);
     }
-    row.low.insert(row.low.end(), moments, moments + kLightCoefficients);
-    for (std::size_t k = kLightCoefficients; k < count; ++k) row.high.push_back(static_cast<float>(moments[k]));
+    AddEntry(moments, count, row);
   }
 }
 

@@ -5,12 +5,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/plane/exact/edge.h"
 #include "core/plane/reference/outlook.h"
 #include "core/plane/reference/panel_light.h"
 #include "core/plane/reference/panel_mesh.h"
+#include "core/plane/reference/specular_gather.h"
 #include "core/plane/reference/stretch.h"
 #include "core/scene/spectrum.h"
 
@@ -29,13 +31,20 @@ struct Row {
   double coordinates = 0;          // What it is off by, as coordinates are, for light of radiance 1.
   Spectrum brightest;              // Radiance of what emits in its sight, the largest.
   std::vector<Stretch> stretches;  // Of what has panels, in the order of theta; each is seen once.
+  // What is seen over mirrors and through glass; what of it is not known, as irradiance per radiance.
+  std::vector<SpecularPiece> specular;
+  double lost = 0;
+  // Of the entries, which come in the order of stretches, then of specular pieces. A panel may come more than once.
   std::vector<std::uint32_t> panels;
+  std::vector<Spectrum> tints;        // Empty: all are white.
+  std::vector<std::uint32_t> pieces;  // 0: of a stretch; i: of the i-th specular piece. Empty: all are of stretches.
   // Irradiance from each Legendre polynomial on each of them: kLightCoefficients, and the rest up to
   // kResidualCoefficients, of which few digits count.
   std::vector<double> low;
   std::vector<float> high;
 
-  // Irradiance from a polynomial of kLightCoefficients on the p-th panel.
+  double Tint(std::size_t p, std::size_t channel) const { return tints.empty() ? 1 : tints[p].value[channel]; }
+  // Irradiance from a polynomial of kLightCoefficients on the p-th entry's panel, but for its tint.
   double TimesLight(std::size_t p, const double* coefficients) const {
     double sum = 0;
     for (std::size_t k = 0; k < kLightCoefficients; ++k) sum += low[p * kLightCoefficients + k] * coefficients[k];
@@ -53,12 +62,16 @@ struct Row {
 
 class RowBuilder {
  public:
-  RowBuilder(const RayCaster& caster, const std::vector<Chart>& charts)
+  // `specular`: absent where nothing is a mirror or glass.
+  RowBuilder(const RayCaster& caster, const std::vector<Chart>& charts,
+             const std::optional<SpecularViewOptions>& specular)
       : scene_(caster.scene()),
         charts_(charts),
         count_(kLightCoefficients - 1, kKernelDigits),
         high_count_(kResidualCoefficients - 1, kKernelDigits / 2),
-        outlook_(caster, charts) {}
+        outlook_(caster, charts) {
+    if (specular) specular_.emplace(caster, charts, *specular);
+  }
 
   // `before`, if not null: the row of the same receiver with the mesh that this one was made of. What is in it already,
   // and what is seen from there, is not computed again; it is left empty. Without `high` the row has no high
@@ -69,13 +82,18 @@ class RowBuilder {
   void AddStretch(const PanelMesh& mesh, const Receiver& receiver, const Row::Stretch& stretch, bool high, Row& row);
   void AddWhole(const Chart& chart, const Panel& panel, const Receiver& receiver, double roundness, std::size_t count,
                 double* moments) const;
+  // Adds what is emitted over mirrors and through glass.
+  void AddEmission(const Receiver& receiver, Row& row);
+  void AddSpecular(const PanelMesh& mesh, const Receiver& receiver, bool high, Row& row);
+  void AddEntry(const double* moments, std::size_t count, Row& row) const;
   // Copies the panel's entry, if there was one.
-  bool Copy(const Panel& panel, bool high, Row& row);
+  bool Copy(const Panel& panel, std::uint32_t piece, bool high, Row& row);
 
   const Scene& scene_;
   const std::vector<Chart>& charts_;
   PointCount count_, high_count_;
   Outlook outlook_;
+  std::optional<SpecularGather> specular_;
   const Row* before_ = nullptr;
   std::size_t next_before_ = 0;  // Entries come in one order in both rows.
 };

@@ -199,13 +199,30 @@ TEST(ReferenceRenderingTest, TheDarkNeedsNoWork) {
   EXPECT_EQ(ended.field->error_bound, 0);
 }
 
-TEST(ReferenceRenderingTest, RefusesWhatItCannotDo) {
+TEST(ReferenceRenderingTest, RefusesWhatItCannotDoOverMirrors) {
   SceneMaker maker = SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 1);
   maker.Segment("glass", {0, 0}, {0.5, 0}, {.material = MirrorDescription{{0.9}}});
+  EXPECT_THAT(Mistakes(*maker.Build(), Reference(1e-3)), ElementsAre());
+  Settings more = Reference(1e-3);
+  more.derivatives = Derivatives::kGradient;
+  more.max_bounces = 3;
+  EXPECT_THAT(Mistakes(*maker.Build(), more),
+              ElementsAre(HasSubstr("settings.derivatives: reference gives none of light that comes over mirrors"),
+                          HasSubstr("settings.maxBounces: is 3, but over mirrors and through glass reference counts")));
+  maker.Light(PointLightDescription{.position = {0, 0.5}, .power = {1}});
+  maker.Bezier("bend", {{0, 0.2}, {0.1, 0.3}, {0.2, 0.3}, {0.3, 0.2}});
+  EXPECT_THAT(Mistakes(*maker.Build(), Reference(1e-3)),
+              ElementsAre(HasSubstr("settings.method: reference leaves out what plane.lights send over mirrors"),
+                          HasSubstr("settings.method: reference does scenes with Bézier curves where nothing is")));
+}
+
+TEST(ReferenceRenderingTest, RefusesWhatItCannotDo) {
+  SceneMaker maker = SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 1);
+  maker.Segment("gloss", {0, 0}, {0.5, 0}, {.material = PhongDescription{{0.9}, 5}});
   const auto scene = maker.Build();
   EXPECT_THAT(Mistakes(*scene, Reference(1e-3)),
-              ElementsAre("settings.method: reference needs a scene that reflects by lambertian materials alone, and "
-                          "curve \"glass\" has another: use path-tracing"));
+              ElementsAre("settings.method: reference does lambertian, mirror and dielectric materials, and curve "
+                          "\"gloss\" has another: use path-tracing"));
   Settings direct = Reference(1e-3);
   direct.max_bounces = 0;
   EXPECT_THAT(Mistakes(*scene, direct), ElementsAre());

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/plane/reference/specular_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <variant>
+
+#include "core/math/trig.h"
+#include "core/plane/chains/beam_cuts.h"
+#include "core/plane/chains/chain.h"
+#include "core/plane/chains/ray_series.h"
+#include "core/plane/intersect.h"
+
+namespace flatlight {
+namespace {
+
+// Of directions and moments, beside the least share; and the best.
+constexpr double kFit = 0.1, kBestFit = 1e-11, kWorstFit = 1e-6;
+// A stretch is eased if so near to its ends, as part of it, a squared cosine is less than that.
+constexpr double kBeside = 1e-6, kGrazing = 1e-4;
+// A polynomial's root, and the place where total reflection begins.
+constexpr double kRootWithin = 1e-3;
+
+bool Reflects(const Curve& curve) { return !curve.reflectance.IsBlack(); }
+
+ChainRays<1> Begin(const Receiver& receiver, double theta) {
+  const SinCosValue turn = SinCos(theta);
+  ChainRays<1> rays;
+  rays.ray.from = VectorSeries<1>::Constant(receiver.position - Point2{});
+  rays.ray.direction = VectorSeries<1>::Constant(turn.sin * receiver.tangent + turn.cos * receiver.normal);
+  rays.flux[0] = 1;
+  return rays;
+}
+
+std::optional<double> Distance(const Scene& scene, ElementId before, const RaySeries<1>& ray, ElementId to, bool far) {
+  const Element& element = scene.element(to);
+  const bool own = element.kind == Element::Kind::kArc && before != ElementId::kNone &&
+                   scene.element(before).carrier == element.carrier;
+  const std::optional<Series<1>> distance = DistanceTo(element, ray, far, own);
+  if (!distance) return std::nullopt;
+  return (*distance)[0];
+}
+
+ElementId LastOf(const Receiver& receiver, const SpecularWay& way) {
+  return way.links.empty() ? receiver.element : way.links.back().element;
+}
+
+// Of the indices of refraction behind a curve and before it.
+double IndexRatio(const Material& material, Side side) {
+  const auto* border = std::get_if<Dielectric>(&material);
+  return border == nullptr ? 1 : side == Side::kFront ? border->ior : 1 / border->ior;
+}
+
+// Irradiance of radiance 1 that comes from between two directions.
+double SinesBetween(double from, double to) { return std::max(SinCos(to).sin - SinCos(from).sin, 0.0); }
+
+}  // namespace
+
+std::optional<SpecularRay> FollowWay(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
+                                     double theta) {
+  ChainRays<1> rays = Begin(receiver, theta);
+  ElementId before = receiver.element;
+  for (const ChainLink& link : way.links) {
+    const std::optional<double> distance = Distance(scene, before, rays.ray, link.element, link.far);
+    if (!distance) return std::nullopt;
+    rays.ray.from = rays.ray.from + *distance * rays.ray.direction;
+    if (!TurnAt(scene, link, rays)) return std::nullopt;
+    before = link.element;
+  }
+  return SpecularRay{Point2{} + rays.ray.from.Value(), rays.ray.direction.Value(), rays.flux[0] * way.compression};
+}
+
+std::optional<double> DistanceBehind(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
+                                     const SpecularRay& ray, ElementId element, bool far) {
+  const RaySeries<1> series{VectorSeries<1>::Constant(ray.from - Point2{}), VectorSeries<1>::Constant(ray.direction)};
+  return Distance(scene, LastOf(receiver, way), series, element, far);
+}
+
+bool HasSpecular(const Scene& scene) {
+  return std::any_of(scene.curves().begin(), scene.curves().end(),
+                     [](const Curve& curve) { return IsSpecular(curve.material) && Reflects(curve); });
+}
+
+bool CanFollow(const Scene& scene) {
+  if (scene.traits().lambertian) return true;
+  if (!scene.lights().empty() || scene.traits().has_beziers) return false;
+  return std::all_of(scene.curves().begin(), scene.curves().end(), [](const Curve& curve) {
+    return !Reflects(curve) || IsSpecular(curve.material) || std::holds_alternative<Lambertian>(curve.material);
+  });
+}
+
+SpecularView::SpecularView(const RayCaster& caster, const SpecularViewOptions& options)
+    : caster_(caster), scene_(caster.scene()), options_(options) {
+  const std::vector<Element>& elements = scene_.elements();
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    for (std::size_t j = i + 1; j < elements.size(); ++j) {
+      const Element &e = elements[i], &f = elements[j];
+      const double reach = e.length + f.length;
+      if (e.carrier == f.carrier || LengthSquared(e.a - f.a) > reach * reach) continue;
+      const ElementCrossings crossings = CrossElements(e, f, scene_.touch_distance());
+      for (int k = 0; k < crossings.count; ++k) crossings_.push_back(crossings.point[k]);
+    }
+  }
+}
+
+const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
+  pieces_.clear();
+  lost_ = 0;
+  numbers_ = 0;
+  const auto way = std::make_shared<const SpecularWay>();
+  const auto directions =
+      std::make_shared<const Directions>(Directions{-0.5 * std::numbers::pi, 0.5 * std::numbers::pi, false, nullptr});
+  const auto line = [&](double x) -> std::optional<DirectedLine> {
+    const SinCosValue turn = SinCos(directions->At(x));
+    const Vector2 direction = turn.sin * receiver.tangent + turn.cos * receiver.normal;
+    return DirectedLine{direction, Cross(direction, receiver.position - Point2{})};
+  };
+  LineFamily::Fit(
+      0, 1, line, [](double, double) { return true; },
+      [&](const LineFamily& lines) {
+        Push(receiver, {.way = way,
+                        .directions = directions,
+                        .lines = lines,
+                        .begin = lines.begin + LineFamily::kOverlap,
+                        .end = lines.end - LineFamily::kOverlap});
+      });
+  std::size_t grown = 0;
+  while (!beams_.empty()) {
+    const Beam beam = beams_.top();
+    beams_.pop();
+    if (beam.weight < options_.least_share || grown >= options_.most_ways) {
+      lost_ += beam.weight;
+      continue;
+    }
+    ++grown;
+    Grow(receiver, beam);
+  }
+  return pieces_;
+}
+
+void SpecularView::Push(const Receiver& receiver, Beam beam) {
+  double most = 0;
+  for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    const std::optional<SpecularRay> ray =
+        FollowWay(scene_, receiver, *beam.way, beam.directions->At(beam.begin + t * (beam.end - beam.begin)));
+    if (ray) most = std::max(most, ray->share);
+  }
+  const double sines = SinesBetween(beam.directions->At(beam.begin), beam.directions->At(beam.end));
+  beam.share = most;
+  beam.weight = most * beam.way->tint.Max() * sines;
+  beam.number = numbers_++;
+  if (beam.weight > 0) beams_.push(std::move(beam));
+}
+
+void SpecularView::Grow(const Receiver& receiver, const Beam& beam) {
+  Cuts cuts(beam.begin, beam.end);
+  const ElementId last = LastOf(receiver, *beam.way);
+  for (const Element& element : scene_.elements()) {
+    const bool own = last != ElementId::kNone && element.carrier == scene_.element(last).carrier;
+    if (own && element.kind == Element::Kind::kSegment) continue;
+    if (own || !PassBy(beam.lines, element)) cuts.AddEndsOf(element, beam.lines);
+  }
+  for (const Point2 crossing : crossings_) cuts.AddRoots(beam.lines, beam.lines.LeftOf(crossing));
+  std::optional<Met> met;
+  double begin = beam.begin, end = beam.begin;
+  const auto finish = [&] {
+    if (met && end > begin) Meet(receiver, beam, *met, begin, end);
+  };
+  cuts.VisitStretches([&](double from, double to) {
+    const std::optional<Met> next = MetBy(receiver, beam, 0.5 * (from + to));
+    if (next != met) {
+      finish();
+      met = next;
+      begin = from;
+    }
+    end = to;
+  });
+  finish();
+}
+
+std::optional<SpecularView::Met> SpecularView::MetBy(const Receiver& receiver, const Beam& beam, double x) const {
+  const std::optional<SpecularRay> ray = FollowWay(scene_, receiver, *beam.way, beam.directions->At(x));
+  if (!ray) return std::nullopt;
+  const std::optional<Hit> hit = caster_.ClosestHit({ray->from, LastOf(receiver, *beam.way)}, ray->direction);
+  if (!hit) return Met{};
+  const Element& element = scene_.element(hit->element);
+  const bool far =
+      element.kind == Element::Kind::kArc && hit->distance > Dot(element.center - ray->from, ray->direction);
+  return Met{hit->element, Dot(hit->normal, ray->direction) < 0 ? Side::kFront : Side::kBack, far};
+}
+
+void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& met, double begin, double end) {
+  const bool direct = beam.way->links.empty();
+  const auto add = [&] {
+    if (!direct) pieces_.push_back({beam.way, met.element, met.side, met.far, beam.directions, beam.lines, begin, end});
+  };
+  if (met.element == ElementId::kNone) {
+    if (scene_.traits().environment) add();
+    return;
+  }
+  const Curve& curve = scene_.curve_of(met.element);
+  const bool specular = IsSpecular(curve.material);
+  if (!curve.EmittedRadiance(met.side).IsBlack() || (Reflects(curve) && !specular)) add();
+  if (!specular || !Reflects(curve)) return;
+  if (!std::holds_alternative<Dielectric>(curve.material)) return Turn(receiver, beam, met, false, begin, end);
+  // Where total reflection begins.
+  std::array<double, Bernstein::kCount> squares{};
+  bool known = true;
+  for (std::size_t i = 0; i < squares.size() && known; ++i) {
+    const double x = begin + Bernstein::Nodes()[i] * (end - begin);
+    const std::optional<double> square = SquaredCosine(receiver, beam, met, true, x);
+    known = square.has_value();
+    squares[i] = square.value_or(0);
+  }
+  std::vector<double> cuts(1, begin);
+  if (known) {
+    const Bernstein::RootList roots = Bernstein::Through(squares).Roots();
+    const auto crosses = [&](double x) { return SquaredCosine(receiver, beam, met, true, x).value_or(-1) > 0; };
+    for (std::size_t i = 0; i < roots.count; ++i) {
+      double low = begin + std::max(roots.t[i] - kRootWithin, 0.0) * (end - begin);
+      double high = begin + std::min(roots.t[i] + kRootWithin, 1.0) * (end - begin);
+      if (low < cuts.back() || crosses(low) == crosses(high)) continue;
+      const bool at_low = crosses(low);
+      for (double middle; low < (middle = 0.5 * (low + high)) && middle < high;)
+        (crosses(middle) == at_low ? low : high) = middle;
+      cuts.push_back(low);
+    }
+  }
+  cuts.push_back(end);
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    Turn(receiver, beam, met, false, cuts[i], cuts[i + 1]);
+    Turn(receiver, beam, met, true, cuts[i], cuts[i + 1]);
+  }
+}
+
+std::optional<double> SpecularView::SquaredCosine(const Receiver& receiver, const Beam& beam, const Met& met,
+                                                  bool behind, double x) const {
+  const std::optional<SpecularRay> ray = FollowWay(scene_, receiver, *beam.way, beam.directions->At(x));
+  if (!ray) return std::nullopt;
+  const std::optional<double> distance = DistanceBehind(scene_, receiver, *beam.way, *ray, met.element, met.far);
+  if (!distance) return std::nullopt;
+  const Element& element = scene_.element(met.element);
+  const VectorSeries<1> place = VectorSeries<1>::Constant(ray->from + *distance * ray->direction - Point2{});
+  const double sine = Cross(FrontOn(element, place).Value(), ray->direction) /
+                      (behind ? IndexRatio(scene_.curve(element.curve).material, met.side) : 1);
+  return (1 - sine) * (1 + sine);
+}
+
+void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& met, bool crosses, double begin,
+                        double end) {
+  const Element& element = scene_.element(met.element);
+  const Curve& curve = scene_.curve(element.curve);
+  const double ratio = IndexRatio(curve.material, met.side);
+  const double most = SinesBetween(beam.directions->At(begin), beam.directions->At(end)) * beam.share *
+                      beam.way->tint.Max() * (crosses ? std::max(1.0, 1 / ratio) : 1);
+  if (most < options_.least_share) {
+    lost_ += most;
+    return;
+  }
+  auto way = std::make_shared<SpecularWay>(*beam.way);
+  way->links.push_back({met.element, met.far, crosses});
+  way->straight &= element.kind == Element::Kind::kSegment && std::holds_alternative<Mirror>(curve.material);
+  if (crosses) {
+    way->compression /= ratio;
+  } else {
+    way->tint = way->tint * curve.reflectance;
+  }
+  const std::shared_ptr<const SpecularWay> shared = way;
+  std::shared_ptr<const Directions> directions = beam.directions;
+  double low = begin, high = end;
+  for (const double x : {begin + kBeside * (end - begin), end - kBeside * (end - begin)}) {
+    const bool grazes = SquaredCosine(receiver, beam, met, false, x).value_or(0) < kGrazing;
+    const bool near_total = std::abs(SquaredCosine(receiver, beam, met, true, x).value_or(0)) < kGrazing;
+    if (low == 0 && high == 1 && directions != beam.directions) break;
+    if (!grazes && !near_total) continue;
+    directions = std::make_shared<const Directions>(Directions{begin, end, true, beam.directions});
+    low = 0, high = 1;
+  }
+  const auto line = [&](double x) -> std::optional<DirectedLine> {
+    const std::optional<SpecularRay> ray = FollowWay(scene_, receiver, *shared, directions->At(x));
+    if (!ray) return std::nullopt;
+    return DirectedLine{ray->direction, Cross(ray->direction, ray->from - Point2{})};
+  };
+  // Whether some ray of the stretch may not be reflected totally.
+  bool some_fail = false;
+  const auto hopeful = [&](double from, double to) {
+    some_fail = true;
+    if (!crosses) return true;
+    std::array<double, Bernstein::kCount> squares{};
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      const double x = from + Bernstein::Nodes()[i] * (to - from);
+      const double in_beam = directions == beam.directions ? x : begin + (end - begin) * x * x * (3 - 2 * x);
+      const std::optional<double> square = SquaredCosine(receiver, beam, met, true, in_beam);
+      if (!square) return true;
+      squares[i] = *square;
+    }
+    return Bernstein::Through(squares).Max() > 0;
+  };
+  LineFit fit;
+  // What carries little need not be known that well.
+  fit.tolerance = std::clamp(kFit * options_.least_share / (beam.share * shared->tint.Max()), kBestFit, kWorstFit);
+  fit.least_part = std::min(options_.least_share / most, 1e-3);
+  LineFamily::Fit(
+      low, high, line, hopeful,
+      [&](const LineFamily& lines) {
+        Push(receiver, {.way = shared,
+                        .directions = directions,
+                        .lines = lines,
+                        .begin = lines.begin + LineFamily::kOverlap,
+                        .end = lines.end - LineFamily::kOverlap});
+      },
+      fit);
+  // What was given up beside where rays begin to fail.
+  if (some_fail) lost_ += 2 * fit.least_part * most;
+}
+
+}  // namespace flatlight

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a receiver sees over mirrors and through glass.
+#ifndef FLATLIGHT_CORE_PLANE_REFERENCE_SPECULAR_VIEW_H_
+#define FLATLIGHT_CORE_PLANE_REFERENCE_SPECULAR_VIEW_H_
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <queue>
+#include <vector>
+
+#include "core/plane/chains/chain_link.h"
+#include "core/plane/chains/line_family.h"
+#include "core/plane/ray_caster.h"
+#include "core/scene/scene.h"
+
+namespace flatlight {
+
+// A way from the receiver, against the light.
+struct SpecularWay {
+  std::vector<ChainLink> links;
+  Spectrum tint = Spectrum::Grey(1);  // Product of the mirrors' reflectances.
+  // Radiance is larger where light is slower: index of refraction at the receiver over that behind the last link
+  // (THEORY 17 A6).
+  double compression = 1;
+  bool straight = true;  // Plane mirrors alone.
+};
+
+// Where a ray from the receiver is behind the last link, and how much of the radiance that comes from there reaches the
+// receiver along it, but for the tint.
+struct SpecularRay {
+  Point2 from;
+  Vector2 direction;
+  double share = 1;
+};
+
+// Of the direction theta, from the receiver's normal toward its tangent. Absent if it misses a link's line or circle,
+// or is totally reflected where it should cross.
+std::optional<SpecularRay> FollowWay(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
+                                     double theta);
+
+// The way that a ray goes on to the line or circle of what it meets, `far` as in ChainLink.
+std::optional<double> DistanceBehind(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
+                                     const SpecularRay& ray, ElementId element, bool far);
+
+// Directions theta by a number in [0, 1] of which all that follows is a smooth function.
+struct Directions {
+  double from = 0;  // Theta or, if there is an outer, numbers of that.
+  double to = 0;
+  // Where rays touch an arc, or begin to be reflected totally, what follows moves as the root of theta; a cubic that is
+  // level at its ends makes that smooth there.
+  bool eased = false;
+  std::shared_ptr<const Directions> outer;
+
+  double At(double x) const {
+    const double y = from + (to - from) * (eased ? x * x * (3 - 2 * x) : x);
+    return outer ? outer->At(y) : y;
+  }
+  // d(theta)/dx.
+  double Slope(double x) const {
+    const double slope = (to - from) * (eased ? 6 * x * (1 - x) : 1);
+    return outer ? outer->Slope(from + (to - from) * (eased ? x * x * (3 - 2 * x) : x)) * slope : slope;
+  }
+};
+
+// What is seen by one way, in an interval of directions.
+struct SpecularPiece {
+  std::shared_ptr<const SpecularWay> way;
+  ElementId element = ElementId::kNone;  // kNone: the environment.
+  Side side = Side::kFront;
+  bool far = false;
+  std::shared_ptr<const Directions> directions;
+  LineFamily lines;  // By the number of a direction, behind the last link.
+  double begin = 0;  // Of the piece: numbers, too.
+  double end = 0;
+};
+
+// Whether a curve of the scene is a mirror or glass.
+bool HasSpecular(const Scene& scene);
+// Whether all that reflects is Lambertian, a mirror or glass, and what is seen over these can be followed: there are no
+// Béziers then, nor lights without a surface.
+bool CanFollow(const Scene& scene);
+
+struct SpecularViewOptions {
+  // Ways are followed as long as they can carry so much irradiance per radiance, and there are not so many of them.
+  double least_share = 1e-10;
+  std::size_t most_ways = 1 << 14;
+};
+
+// Follows families of rays from the receiver. What a family meets first changes only where one of its rays passes an
+// end of a piece, touches an arc or goes through a point that two pieces have in common: all these are roots, so that
+// nothing is missed, however small. Holds working memory: one for each thread.
+class SpecularView {
+ public:
+  // The caster must outlive this.
+  SpecularView(const RayCaster& caster, const SpecularViewOptions& options);
+
+  // What emits or reflects by Lambertian curves, and the environment, over at least one link. In no order that means
+  // anything. Valid until the next call.
+  const std::vector<SpecularPiece>& From(const Receiver& receiver);
+  // What ways that were not followed further could have brought the receiver of the last call: irradiance per radiance.
+  double lost() const { return lost_; }
+
+ private:
+  struct Beam {
+    std::shared_ptr<const SpecularWay> way;
+    std::shared_ptr<const Directions> directions;
+    LineFamily lines;
+    double begin = 0, end = 0;
+    double share = 0;   // The largest of its rays, about.
+    double weight = 0;  // About the most irradiance per radiance that it can carry.
+    std::size_t number = 0;
+  };
+  struct Weaker {
+    bool operator()(const Beam& a, const Beam& b) const {
+      return a.weight < b.weight || (a.weight == b.weight && a.number > b.number);
+    }
+  };
+  struct Met {
+    ElementId element = ElementId::kNone;
+    Side side = Side::kFront;
+    bool far = false;
+    friend bool operator==(const Met& a, const Met& b) {
+      return a.element == b.element && a.side == b.side && a.far == b.far;
+    }
+  };
+
+  void Grow(const Receiver& receiver, const Beam& beam);
+  std::optional<Met> MetBy(const Receiver& receiver, const Beam& beam, double x) const;
+  void Meet(const Receiver& receiver, const Beam& beam, const Met& met, double begin, double end);
+  void Turn(const Receiver& receiver, const Beam& beam, const Met& met, bool crosses, double begin, double end);
+  // Square of the cosine to the normal behind the border that is met, if `behind`, or before it; negative where all is
+  // reflected.
+  std::optional<double> SquaredCosine(const Receiver& receiver, const Beam& beam, const Met& met, bool behind,
+                                      double x) const;
+  void Push(const Receiver& receiver, Beam beam);
+
+  const RayCaster& caster_;
+  const Scene& scene_;
+  SpecularViewOptions options_;
+  std::vector<Point2> crossings_;  // Points that two elements have in common, inside both.
+  std::priority_queue<Beam, std::vector<Beam>, Weaker> beams_;
+  std::size_t numbers_ = 0;
+  std::vector<SpecularPiece> pieces_;
+  double lost_ = 0;
+};
+
+}  // namespace flatlight
+
+#endif  // FLATLIGHT_CORE_PLANE_REFERENCE_SPECULAR_VIEW_H_
