@@ -239,14 +239,15 @@ bool Radiosity::Solve(const Loop& loop) {
     ToCoefficients(values, coefficients);
     for (std::size_t i = 0; i < mesh_.size(); ++i) std::copy_n(&coefficients[i * kNodes], kNodes, light.Of(i, c));
   };
+  double reflected = 0;
   for (std::size_t r = 0; r < rows_.nodes.size(); ++r) {
     double& brightest = brightest_[r / kNodes * channels_ + c];
     brightest = std::max(brightest, std::abs(accumulation_->values()[r]));
-    errors_.brightest.value[c] = std::max(errors_.brightest.value[c], brightest);
+    reflected = std::max(reflected, brightest);
   }
-  for (const Curve& curve : scene_.curves())
-    errors_.brightest.value[c] = std::max(errors_.brightest.value[c], curve.radiance.value[c]);
-  errors_.brightest.value[c] = std::max(errors_.brightest.value[c], scene_.environment().value[c]);
+  double emitted = scene_.environment().value[c];
+  for (const Curve& curve : scene_.curves()) emitted = std::max(emitted, curve.radiance.value[c]);
+  errors_.brightest.value[c] = emitted + reflected;
   keep(accumulation_->values(), light_);
   keep(accumulation_->before(), before_);
   keep(source(), first_);

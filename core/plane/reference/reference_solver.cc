@@ -96,7 +96,8 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
       channels_(static_cast<std::size_t>(options.channels)),
       world_(before ? std::move(before) : NewWorld(std::move(caster), options)),
       tolerance_(std::clamp(kTolerance * options.target_error, kLeastTolerance, kTolerance)),
-      lights_(*world_->caster, {.derivatives = options.derivatives}) {
+      lights_(*world_->caster, {.derivatives = options.derivatives}),
+      specular_(SpecularOptions(world_->caster->scene(), options)) {
   for (std::size_t p = 0; p < scene_->probes().size(); ++p) {
     const std::vector<Receiver>& receivers = scene_->probes()[p].receivers;
     const std::size_t count = std::min(receivers.size(), options_.most_points);
@@ -145,7 +146,7 @@ std::unique_ptr<ReferenceSolver::Worker> ReferenceSolver::Take() {
       return worker;
     }
   }
-  return std::make_unique<Worker>(*world_->caster, world_->charts, SpecularOptions(world_->caster->scene(), options_),
+  return std::make_unique<Worker>(*world_->caster, world_->charts, specular_,
                                   ExactOptions{.derivatives = options_.derivatives, .channels = options_.channels});
 }
 

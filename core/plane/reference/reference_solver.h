@@ -18,6 +18,7 @@
 #include "core/plane/ray_caster.h"
 #include "core/plane/reference/radiosity.h"
 #include "core/plane/reference/solved_world.h"
+#include "core/plane/reference/specular_view.h"
 #include "core/plane/reference/visibility_events.h"
 
 namespace flatlight {
@@ -97,6 +98,7 @@ class ReferenceSolver {
   std::vector<std::vector<EventPlace>> found_;
   double tolerance_;  // To which equations are solved.
   LightSolver lights_;
+  std::optional<SpecularViewOptions> specular_;
   std::vector<const Receiver*> points_;
   std::vector<std::size_t> probe_of_point_;
   std::vector<double> points_of_probe_;

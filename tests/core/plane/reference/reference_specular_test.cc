@@ -53,7 +53,7 @@ TEST(ReferenceSpecularTest, APerfectMirrorCompletesARoom) {
   whole.Arc("ball", {{1.1, -0.6}, 0.2, 0, -kTurn}, plate).Arc("ball'", {{-1.1, -0.6}, 0.2, 0, -kTurn}, plate);
   for (SceneMaker* maker : {&half, &whole})
     for (const char* curve : {"walls", "plate", "ball"}) maker->Probe(curve, 9);
-  for (const double target : {1e-3, 1e-6})
+  for (const double target : {1e-3, 1e-5})
     ExpectNear(SolveReference(half.Build(), Options(target)), SolveReference(whole.Build(), Options(target)), target);
 }
 
@@ -61,7 +61,7 @@ TEST(ReferenceSpecularTest, APerfectMirrorCompletesARoom) {
 void ExpectFurnace(SceneMaker maker, double reflectance, double target) {
   maker.Polyline("walls", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, true,
                  {.reflectance = {reflectance}, .radiance = {1 - reflectance}});
-  maker.Probe("walls", 9);
+  maker.Probe("walls", 8);  // None in a corner.
   const SolvedReference solved = SolveReference(maker.Build(), Options(target));
   EXPECT_EQ(solved.state, ReferenceSolver::State::kReached) << solved.relative_error;
   for (const ExactValue& value : solved.values) {
@@ -70,35 +70,44 @@ void ExpectFurnace(SceneMaker maker, double reflectance, double target) {
   }
 }
 
-TEST(ReferenceSpecularTest, AFurnaceWithPlaneMirrorsAndPrismsIsLitAlikeEverywhere) {
+TEST(ReferenceSpecularTest, AFurnaceWithPlaneMirrorsIsLitAlikeEverywhere) {
   for (const double reflectance : {0.5, 0.99}) {
     SceneMaker maker;
     maker.Segment("mirror", {-0.6, 0.5}, {-0.2, 0.8}, MirrorOf(1));
     maker.Segment("other mirror", {0.3, 0.7}, {0.7, 0.5}, MirrorOf(1));
-    maker.Polyline("prism", {{-0.3, -0.6}, {0.4, -0.5}, {0.1, 0.1}}, true, Glass(1.5));
     ExpectFurnace(maker, reflectance, 1e-5);
   }
 }
 
-TEST(ReferenceSpecularTest, AFurnaceWithRoundMirrorsAndGlassIsLitAlikeEverywhere) {
-  SceneMaker mirrors, glass;
-  mirrors.Arc("ball", {{0.4, 0.4}, 0.3, 0, -kTurn}, MirrorOf(1)).Arc("bowl", {{-0.4, 0.1}, 0.3, 1, 2}, MirrorOf(1));
-  ExpectFurnace(mirrors, 0.8, 1e-4);
-  glass.Arc("ball", {{-0.4, -0.2}, 0.25, 0, -kTurn}, Glass(1.5));
-  ExpectFurnace(glass, 0.5, 1e-2);
+TEST(ReferenceSpecularTest, AFurnaceWithAPrismIsLitAlikeEverywhere) {
+  SceneMaker maker;
+  maker.Polyline("prism", {{-0.3, -0.6}, {0.4, -0.5}, {0.1, 0.1}}, true, Glass(1.5));
+  ExpectFurnace(maker, 0.5, 1e-3);
 }
 
-// Under water of index 1.5, beneath a sky of radiance 1, radiance is 1.5 where the sky is seen (THEORY 17 A6): all
-// directions whose sines are below 1/1.5 see it through the surface, but for what that reflects back.
+TEST(ReferenceSpecularTest, AFurnaceWithRoundMirrorsIsLitAlikeEverywhere) {
+  SceneMaker maker;
+  maker.Arc("ball", {{0.4, 0.4}, 0.3, 0, -kTurn}, MirrorOf(1)).Arc("bowl", {{-0.4, 0.1}, 0.3, 1, 2}, MirrorOf(1));
+  ExpectFurnace(maker, 0.8, 1e-3);
+}
+
+TEST(ReferenceSpecularTest, AFurnaceWithABallOfGlassIsLitAlikeEverywhere) {
+  SceneMaker maker;
+  maker.Arc("ball", {{-0.4, -0.2}, 0.25, 0, -kTurn}, Glass(1.5));
+  ExpectFurnace(maker, 0.5, 1e-2);
+}
+
+// Under water of index 1.5, beneath a sky of radiance 1, radiance is 1.5 where the sky is seen (THEORY 17 A6), but for
+// what the surface reflects back; what it reflects totally is dark.
 TEST(ReferenceSpecularTest, RadianceIsLargerWhereLightIsSlower) {
   SceneMaker maker;
   maker.Environment({1});
-  maker.Segment("surface", {1e4, 0}, {-1e4, 0}, Glass(1 / 1.5));
-  maker.Segment("bottom", {-1, -1}, {1, -1});
-  maker.Probe("bottom", 3);
+  maker.Segment("surface", {1e3, 0}, {-1e3, 0}, Glass(1 / 1.5));
+  maker.Segment("bottom", {-1e3, -1}, {1e3, -1});
+  maker.PointProbe({0, -1}, {0, 1});
   const SolvedReference solved = SolveReference(maker.Build(), Options(1e-6));
   ASSERT_EQ(solved.state, ReferenceSolver::State::kReached);
-  for (const ExactValue& value : solved.values) EXPECT_NEAR(value.irradiance[0], 1.86405, 2e-4);
+  for (const ExactValue& value : solved.values) EXPECT_NEAR(value.irradiance[0], 1.86405, 1e-4);
 }
 
 }  // namespace
