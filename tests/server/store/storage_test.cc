@@ -52,7 +52,8 @@ class StorageTest : public ::testing::Test {
     return made.ok() ? *made : JobId();
   }
   static absl::Status End(JobArchive& archive, const JobId& id, const std::string& result) {
-    return archive.End(id, {.message = "ended", .sequence = 5, .result = result, .time = std::chrono::system_clock::now()});
+    return archive.End(id,
+                       {.message = "ended", .sequence = 5, .result = result, .time = std::chrono::system_clock::now()});
   }
 
   testing::TemporaryFolder folder_;
