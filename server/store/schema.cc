@@ -213,9 +213,9 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 }  // namespace
 
 const std::vector<std::string>& Migrations() {
-  static const std::vector<std::string> kMigrations = {kJobs,     kScenes,      kUsers,       kPauses, kGrants,
-                                                       kRooms,    kSceneOwners, kJobsByOwner, kQuotas, kSceneGrants,
-                                                       kWebhooks, kRetention,   kDoneWork,    kUsersVersion};
+  static const std::vector<std::string> kMigrations = {
+      kJobs,        kScenes, kUsers,       kPauses,   kGrants,    kRooms,    kSceneOwners,
+      kJobsByOwner, kQuotas, kSceneGrants, kWebhooks, kRetention, kDoneWork, kUsersVersion};
   return kMigrations;
 }
 
