@@ -24,6 +24,7 @@ constexpr std::uint32_t kDefaultFirstRays = 256;
 // Of a pixel: a path goes through hundreds of them.
 constexpr std::uint32_t kDefaultPictureSamples = 8;
 constexpr double kReferenceError = 1e-6;
+constexpr double kSpecularReferenceError = 1e-3;  // What is seen over mirrors and glass takes far longer.
 
 std::string Listed(const std::vector<std::string>& names) {
   std::string text;
@@ -177,10 +178,13 @@ void FillMethodDefaults(const Scene& scene, Plan& plan) {
   }
   if (settings.method == Method::kReference) {
     if (!settings.derivatives.has_value()) {
-      const bool none = scene.traits().has_beziers && !DirectLightOnly(scene, settings);
-      settings.derivatives = none ? Derivatives::kNone : Derivatives::kHessian;
+      const bool all = DirectLightOnly(scene, settings) || PanelsTellAll(scene);
+      settings.derivatives = all ? Derivatives::kHessian : Derivatives::kNone;
     }
-    if (!settings.target_error.has_value()) settings.target_error = kReferenceError;
+    if (!settings.target_error.has_value()) {
+      const bool specular = !scene.traits().lambertian && !DirectLightOnly(scene, settings);
+      settings.target_error = specular ? kSpecularReferenceError : kReferenceError;
+    }
     return;
   }
   if (settings.method == Method::kIrradianceCaching) {

@@ -199,6 +199,18 @@ TEST(ReferenceRenderingTest, TheDarkNeedsNoWork) {
   EXPECT_EQ(ended.field->error_bound, 0);
 }
 
+TEST(ReferenceRenderingTest, OverMirrorsThereAreNoDerivativesUnlessLightIsDirect) {
+  SceneMaker maker = SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 2);
+  maker.Segment("mirror", {0, 0}, {0.5, 0}, {.material = MirrorDescription{{0.9}}});
+  Settings settings;
+  settings.method = Method::kReference;
+  const Ended all = Render(maker.Build(), settings);
+  EXPECT_GT(all.field->probes[0].irradiance[0], 0);
+  EXPECT_TRUE(all.field->probes[0].gradient.empty());
+  settings.max_bounces = 0;
+  EXPECT_FALSE(Render(maker.Build(), settings).field->probes[0].gradient.empty());
+}
+
 TEST(ReferenceRenderingTest, RefusesWhatItCannotDoOverMirrors) {
   SceneMaker maker = SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 1);
   maker.Segment("glass", {0, 0}, {0.5, 0}, {.material = MirrorDescription{{0.9}}});
