@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -84,7 +85,7 @@ bool IsPublic(std::uint32_t v4) {
 // Global unicast, 2000::/3, without what leads elsewhere: protocols with Teredo (2001::/23), documentation
 // (2001:db8::/32), and 6to4 (2002::/16).
 bool IsPublic(const in6_addr& v6) {
-  const auto word = [&](int i) { return (v6.s6_addr[2 * i] << 8) | v6.s6_addr[2 * i + 1]; };
+  const auto word = [&](std::size_t i) { return (v6.s6_addr[2 * i] << 8) | v6.s6_addr[2 * i + 1]; };
   if ((word(0) & 0xE000) != 0x2000 || word(0) == 0x2002) return false;
   return word(0) != 0x2001 || ((word(1) & 0xFE00) != 0 && word(1) != 0x0DB8);
 }
@@ -96,7 +97,7 @@ absl::Status Refused(const std::string& message) {
 }  // namespace
 
 absl::Status WebhookRules::Allow(const std::string& text) {
-  const absl::Status bad = absl::InvalidArgumentError(
+  absl::Status bad = absl::InvalidArgumentError(
       "\"" + text + "\"; must be HOST or HOST:PORT, such as hooks.example.org or 10.1.2.3:8080");
   // A URL of nothing but this. An asterisk, which names all, is the name of no host.
   if (text.find_first_of("/?#@* ") != std::string::npos) return bad;

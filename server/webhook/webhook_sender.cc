@@ -21,7 +21,7 @@ constexpr milliseconds kRewrite{2000};
 // Between 0 and a fifth of a delay, always the same for the same attempt.
 milliseconds Spread(milliseconds delay, const DueWebhook& webhook) {
   const auto mixed = (static_cast<std::uint64_t>(webhook.number) * 31 + webhook.attempts) * 0x9E3779B97F4A7C15u;
-  return milliseconds(delay.count() * static_cast<std::int64_t>(mixed >> 54) / (5 * 1024));
+  return milliseconds(delay.count() * static_cast<std::int64_t>(mixed >> 54) / 5120);
 }
 
 }  // namespace

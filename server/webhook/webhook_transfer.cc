@@ -27,7 +27,7 @@ WebhookTransfer::WebhookTransfer(const WebhookRules& rules, Message message, std
   for (const std::string& header : message_.headers) {
     // A failure leaves the list as it was, which the receiver notices.
     if (curl_slist* longer = curl_slist_append(headers_.get(), header.c_str()); longer != nullptr) {
-      headers_.release();
+      static_cast<void>(headers_.release());  // It is the longer one's now.
       headers_.reset(longer);
     }
   }
