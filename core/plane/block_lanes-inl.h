@@ -117,6 +117,34 @@ HWY_INLINE hn::Mask<Doubles> OfCarrier(const CurveBlock& block, std::uint32_t la
   return hn::RebindMask(Doubles(), hn::Eq(hn::ShiftRight<32>(hn::Load(ids, block.id + lane)), hn::Set(ids, carrier)));
 }
 
+// Lanes whose segment the line meets, as MeetLanes has it, but for those of one carrier, those that lie behind the
+// origin, and with `ends` those that lie beyond t = 1. Where what is left is met may still be behind, or beyond.
+template <bool ends>
+HWY_INLINE std::uint32_t SegmentsAhead(const Line& line, const CurveBlock& block, std::uint32_t own_carrier,
+                                       bool has_arcs) {
+  const Doubles d;
+  const auto dx = hn::Set(d, line.direction.x), dy = hn::Set(d, line.direction.y), slack = hn::Set(d, line.slack);
+  std::uint32_t bits = 0;
+  for (std::uint32_t lane = 0; lane < CurveBlock::kWidth; lane += kBlockLanes) {
+    const auto ax = hn::Sub(hn::Load(d, block.ax + lane), hn::Set(d, line.origin.x));
+    const auto ay = hn::Sub(hn::Load(d, block.ay + lane), hn::Set(d, line.origin.y));
+    const auto bx = hn::Sub(hn::Load(d, block.bx + lane), hn::Set(d, line.origin.x));
+    const auto by = hn::Sub(hn::Load(d, block.by + lane), hn::Set(d, line.origin.y));
+    const auto side_a = hn::Sub(hn::Mul(dx, ay), hn::Mul(dy, ax)), side_b = hn::Sub(hn::Mul(dx, by), hn::Mul(dy, bx));
+    const auto way_a = hn::Add(hn::Mul(ax, dx), hn::Mul(ay, dy)), way_b = hn::Add(hn::Mul(bx, dx), hn::Mul(by, dy));
+    auto met = hn::And(hn::Le(hn::Min(side_a, side_b), slack), hn::Ge(hn::Max(side_a, side_b), hn::Neg(slack)));
+    met = hn::And(met, hn::Gt(hn::Max(way_a, way_b), hn::Zero(d)));
+    if constexpr (ends) {
+      const auto near = hn::Mul(hn::Min(way_a, way_b), hn::Set(d, line.inverse_length_squared));
+      met = hn::And(met, hn::Lt(near, hn::Set(d, 1)));
+    }
+    met = hn::AndNot(OfCarrier(block, lane, own_carrier), met);
+    if (has_arcs) met = hn::AndNot(IsArc(block, lane), met);
+    bits |= BlockBits(met) << lane;
+  }
+  return bits;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace flatlight
 HWY_AFTER_NAMESPACE();

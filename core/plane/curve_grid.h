@@ -29,6 +29,7 @@ struct alignas(64) CurveBlock {
   std::uint64_t id[kWidth];  // Element, carrier << 32, and kArc if it is one.
 
   std::uint32_t element(std::uint32_t lane) const { return static_cast<std::uint32_t>(id[lane]); }
+  std::uint32_t carrier(std::uint32_t lane) const { return static_cast<std::uint32_t>((id[lane] & ~kArc) >> 32); }
   bool InUse(std::uint32_t lane) const { return ax[lane] == ax[lane]; }
 };
 static_assert(sizeof(CurveBlock) == 320);

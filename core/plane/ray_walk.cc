@@ -27,6 +27,39 @@ struct World {
   }
 };
 
+// Whether a ray meets anything in a cell is what no branch predictor foresees, so it is asked once for many segments,
+// with a bit for each.
+inline constexpr std::uint32_t kBlocksAtOnce = 64 / CurveBlock::kWidth;
+
+template <bool ends>
+HWY_INLINE std::uint64_t SegmentsAhead(const Line& line, const CurveBlock* blocks, std::uint32_t count,
+                                       std::uint32_t own_carrier, bool has_arcs) {
+  std::uint64_t ahead = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint64_t bits = SegmentsAhead<ends>(line, blocks[i], own_carrier, has_arcs);
+    ahead |= bits << (CurveBlock::kWidth * i);
+  }
+  return ahead;
+}
+
+// The first of these bits.
+struct BlockLane {
+  std::uint32_t block;
+  std::uint32_t lane;
+  HWY_INLINE BlockLane(std::uint32_t first_block, std::uint64_t bits) {
+    const auto bit = static_cast<std::uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+    block = first_block + bit / CurveBlock::kWidth;
+    lane = bit % CurveBlock::kWidth;
+  }
+};
+
+// Where the line meets a segment that it meets.
+HWY_INLINE double DistanceInLane(const Line& line, const CurveBlock& block, std::uint32_t lane) {
+  double t = 0;
+  MeetsSegment(line, {block.ax[lane], block.ay[lane]}, {block.bx[lane], block.by[lane]}, t);
+  return t;
+}
+
 // The first crossing of a ray.
 struct NearestSearch {
   using Result = NearestCrossing;
@@ -46,6 +79,34 @@ struct NearestSearch {
   // Meets the elements of a cell; false, as a later one may be nearer.
   HWY_INLINE bool Meet(const World& world, const GridCell& cell) {
     const CurveBlock* const blocks = world.grid.blocks().data();
+    std::uint64_t ahead = ~std::uint64_t{0};
+    if (cell.count <= kBlocksAtOnce) {
+      ahead = SegmentsAhead<false>(line, blocks + cell.first, cell.count, own_carrier, cell.kind == GridCell::kCurves);
+    }
+    if ((ahead & (ahead - 1)) != 0) {
+      MeetSegments(blocks, cell);
+    } else if (ahead != 0) {
+      MeetSegment(blocks, BlockLane(cell.first, ahead));
+    }
+    if (cell.kind == GridCell::kCurves) {
+      for (std::uint32_t index = cell.first; index < cell.first + cell.count; ++index) {
+        const CurveBlock& block = blocks[index];
+        for (std::uint32_t bits = ArcsNear(line, block); bits != 0; bits &= bits - 1)
+          MeetElement(world, block.element(FirstLane(bits)));
+      }
+    }
+    return false;
+  }
+
+  // The one segment whose bit is set.
+  HWY_INLINE void MeetSegment(const CurveBlock* blocks, const BlockLane& at) {
+    const CurveBlock& block = blocks[at.block];
+    const double t = DistanceInLane(line, block, at.lane);
+    if (t > 0 && t < std::numeric_limits<double>::infinity()) Keep({t, block.element(at.lane), at.block, at.lane});
+  }
+
+  // Several, without a question until the nearest is known: how many of them there are can't be foreseen.
+  HWY_INLINE void MeetSegments(const CurveBlock* blocks, const GridCell& cell) {
     const Doubles d;
     const Ids ids;
     const auto infinity = hn::Set(d, std::numeric_limits<double>::infinity());
@@ -73,14 +134,6 @@ struct NearestSearch {
         } while (HWY_UNLIKELY(bits != 0));
       }
     }
-    if (cell.kind == GridCell::kCurves) {
-      for (std::uint32_t index = cell.first; index < cell.first + cell.count; ++index) {
-        const CurveBlock& block = blocks[index];
-        for (std::uint32_t bits = ArcsNear(line, block); bits != 0; bits &= bits - 1)
-          MeetElement(world, block.element(FirstLane(bits)));
-      }
-    }
-    return false;
   }
 
   HWY_INLINE bool MeetElement(const World& world, std::uint32_t index) {
@@ -130,21 +183,17 @@ struct BlockerSearch {
   // Meets the elements of a cell; true if one blocks.
   HWY_INLINE bool Meet(const World& world, const GridCell& cell) {
     const CurveBlock* const blocks = world.grid.blocks().data();
-    const Doubles d;
-    auto blocking = hn::Lt(hn::Zero(d), hn::Zero(d));
-    for (std::uint32_t index = cell.first; index < cell.first + cell.count; ++index) {
-      const CurveBlock& block = blocks[index];
-      for (std::uint32_t lane = 0; lane < CurveBlock::kWidth; lane += kBlockLanes) {
-        const LaneMeeting meeting = MeetLanes(line, block, lane);
-        auto met = hn::And(meeting.met, hn::And(hn::Gt(meeting.t, hn::Zero(d)), hn::Lt(meeting.t, hn::Set(d, 1))));
-        met = hn::AndNot(OfCarrier(block, lane, ray.from.carrier), met);
-        met = hn::AndNot(OfCarrier(block, lane, to.carrier), met);
-        if (cell.kind == GridCell::kCurves) met = hn::AndNot(IsArc(block, lane), met);
-        blocking = hn::Or(blocking, met);
+    const bool has_arcs = cell.kind == GridCell::kCurves;
+    for (std::uint32_t begin = 0; begin < cell.count; begin += kBlocksAtOnce) {
+      const std::uint32_t first = cell.first + begin, count = std::min(cell.count - begin, kBlocksAtOnce);
+      std::uint64_t ahead = SegmentsAhead<true>(line, blocks + first, count, ray.from.carrier, has_arcs);
+      for (; ahead != 0; ahead &= ahead - 1) {
+        const BlockLane at(first, ahead);
+        const double t = DistanceInLane(line, blocks[at.block], at.lane);
+        if (t > 0 && t < 1 && blocks[at.block].carrier(at.lane) != to.carrier) return result = true;
       }
     }
-    result = !hn::AllFalse(d, blocking);
-    if (result || cell.kind == GridCell::kSegments) return result;
+    if (!has_arcs) return false;
     for (std::uint32_t index = cell.first; index < cell.first + cell.count; ++index) {
       const CurveBlock& block = blocks[index];
       for (std::uint32_t bits = ArcsNear(line, block); bits != 0; bits &= bits - 1)

@@ -12,15 +12,6 @@ namespace {
 // Of straight and arced pieces: everything that a panel may see is kept, some 100 kB a piece.
 constexpr std::size_t kMostReferencePieces = 2048;
 
-}  // namespace
-
-bool PanelsTellAll(const Scene& scene) {
-  const SceneTraits& traits = scene.traits();
-  return traits.lambertian && !traits.has_beziers && traits.elements <= kMostReferencePieces;
-}
-
-namespace {
-
 void CheckCount(const Scene& scene, const std::string& path, const std::string& other, Diagnostics& diagnostics) {
   if (scene.traits().elements <= kMostReferencePieces) return;
   diagnostics.Add(path, "reference does scenes of up to " + Text(kMostReferencePieces) +
@@ -41,6 +32,11 @@ bool IsGlossy(const Material& material) {
 }
 
 }  // namespace
+
+bool PanelsTellAll(const Scene& scene) {
+  const SceneTraits& traits = scene.traits();
+  return traits.lambertian && !traits.has_beziers && traits.elements <= kMostReferencePieces;
+}
 
 void CheckPanelDerivatives(const Scene& scene, const std::string& path, const std::string& other,
                            Diagnostics& diagnostics) {

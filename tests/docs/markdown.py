@@ -47,7 +47,7 @@ def _without_chance(line):
     line = re.sub(r"\b[0-9a-f]{64}\b", "HASH", line)
     line = re.sub(r"-?\b[0-9]+(\.[0-9]+(e[-+]?[0-9]+)?|e[-+]?[0-9]+|(?= (%|(us|ms|s|min|h|[kM] rays)\b)))", "NUMBER", line)
     line = re.sub(r"--threads [0-9]+", "--threads COUNT", line)
-    line = re.sub(r"NUMBER (us|ms|s|min|h)\b", "TIME", line)
+    line = re.sub(r"NUMBER (us|ms|s|min|h)\b|\b[0-9]+(:[0-5][0-9]){1,2}(?= |$)", "TIME", line)
     line = re.sub(r"NUMBER ([kM] )?rays", "NUMBER rays", line)
     line = re.sub(r"\b(NUMBER|[0-9]+) [kMG]\b", "NUMBER", line)
     return re.sub(r"  +", "  ", line.rstrip())

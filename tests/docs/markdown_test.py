@@ -47,6 +47,7 @@ class MarkdownTest(unittest.TestCase):
         self.assertTrue(markdown.matches([f"{job}  8 s  a"], [f"{other}  12.5 s    a"]))
         self.assertTrue(markdown.matches(["--threads 2, error 6.6 %"], ["--threads 8, error 7 %"]))
         self.assertTrue(markdown.matches(["efficiency 1.03 M"], ["efficiency 980 k"]))
+        self.assertTrue(markdown.matches(["done in 4.5 s (31 s left)"], ["done in 1:15 (2:01:07 left)"]))
         self.assertFalse(markdown.matches(["7 rays"], ["8 rays"]))
         self.assertFalse(markdown.matches(["0.5 equal"], ["0.5 differs"]))
 

@@ -294,7 +294,6 @@ void ExactSolver::AddIntervals(const std::vector<VisibleInterval>& intervals, co
   }
   turn_at_horizon(1, {});
   AddMeetings<kChannels>(receiver, value);
-  AddTies<kChannels>(parts, receiver, value);
 }
 
 template <int kChannels>
@@ -335,7 +334,7 @@ void ExactSolver::AddUndecided(const std::vector<VisibleInterval>& intervals, st
   const double doubt = 2 * known * (before.q + edge.q) + 8 * kUnitRoundoff;
   if (before.kind != Edge::Kind::kHorizon && before.kind != Edge::Kind::kTouch && edge.key - before.key <= doubt &&
       std::abs(before.q - edge.q) <= kBehind * edge.q && (before.kind != edge.kind || before.point != edge.point)) {
-    AddDifference<kChannels>(before, edge, brightest_, receiver, value);
+    AddDifference<kChannels>(before, edge, receiver, value);
     AddDoubt<kChannels>(edge, 0, brightest_, receiver, value);
   }
   const std::int32_t last = intervals[i - 1].part, next = intervals[i].part;
@@ -351,12 +350,11 @@ void ExactSolver::AddUndecided(const std::vector<VisibleInterval>& intervals, st
 }
 
 template <int kChannels>
-void ExactSolver::AddDifference(const Edge& a, const Edge& b, const Spectrum& most, const Receiver& receiver,
-                                ExactValue& value) const {
+void ExactSolver::AddDifference(const Edge& a, const Edge& b, const Receiver& receiver, ExactValue& value) const {
   const EdgeDerivatives at_a = Derive(a, receiver.curvature, receiver.curvature_change);
   const EdgeDerivatives at_b = Derive(b, receiver.curvature, receiver.curvature_change);
   for (int channel = 0; channel < kChannels; ++channel) {
-    const double size = most[channel];
+    const double size = brightest_[channel];
     // An angle is at most twice the difference of its keys.
     value.irradiance_error[channel] += size * std::abs(receiver.half_angle > 0 ? 2 * (a.key - b.key) : a.s - b.s);
     if (options_.derivatives >= 1) value.rotation_error[channel] += size * std::abs(a.c - b.c);
@@ -394,30 +392,6 @@ void ExactSolver::AddMeetings(const Receiver& receiver, ExactValue& value) const
       if (options_.derivatives >= 1) value.rotation_error[channel] += size * errors.c;
       if (options_.derivatives >= 1) value.gradient_error[channel] += size * errors.s_first;
       if (options_.derivatives >= 2) value.hessian_error[channel] += size * errors.s_second;
-    }
-  }
-}
-
-template <int kChannels>
-void ExactSolver::AddTies(const std::vector<Part>& parts, const Receiver& receiver, ExactValue& value) const {
-  for (const Sweep::Tie& tie : sweep_.ties()) {
-    const Spectrum shown = scene_.curve_of(parts[tie.shown].element).EmittedRadiance(tie.shown_side);
-    const Spectrum other = scene_.curve_of(parts[tie.other].element).EmittedRadiance(tie.other_side);
-    Spectrum difference;
-    for (int channel = 0; channel < kChannels; ++channel)
-      difference[channel] = std::abs(shown[channel] - other[channel]);
-    if (difference.IsBlack()) continue;
-    AddDifference<kChannels>(tie.from, tie.to, difference, receiver, value);
-    AddDoubt<kChannels>(tie.from, 0, difference, receiver, value);
-    AddDoubt<kChannels>(tie.to, 0, difference, receiver, value);
-    // Where one takes over from the other in between is a place that moves as a vertex does.
-    const double k = std::abs(receiver.curvature), q = tie.nearness, angle = 2 * std::abs(tie.to.key - tie.from.key);
-    const double second = std::abs(receiver.curvature_change) + k * k + 3 * q * (k + q);
-    for (int channel = 0; channel < kChannels; ++channel) {
-      const double size = 2 * difference[channel];
-      if (options_.derivatives >= 1) value.rotation_error[channel] += size * std::min(1.0, angle);
-      if (options_.derivatives >= 1) value.gradient_error[channel] += size * (k + q);
-      if (options_.derivatives >= 2) value.hessian_error[channel] += size * second;
     }
   }
 }

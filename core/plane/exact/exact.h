@@ -97,19 +97,15 @@ class ExactSolver {
   template <int kChannels>
   void AddUndecided(const std::vector<VisibleInterval>& intervals, std::size_t i, const std::vector<Part>& parts,
                     const Receiver& receiver, ExactValue& value) const;
-  // What up to so much light between two edges makes of irradiance and its derivatives.
+  // What light between two edges makes of irradiance and its derivatives.
   template <int kChannels>
-  void AddDifference(const Edge& a, const Edge& b, const Spectrum& most, const Receiver& receiver,
-                     ExactValue& value) const;
+  void AddDifference(const Edge& a, const Edge& b, const Receiver& receiver, ExactValue& value) const;
   // What up to so much light may change if it comes, or does not, from beside an edge, no farther from it than the
   // accuracy of coordinates and `wide`.
   template <int kChannels>
   void AddDoubt(const Edge& edge, double wide, const Spectrum& most, const Receiver& receiver, ExactValue& value) const;
   template <int kChannels>
   void AddMeetings(const Receiver& receiver, ExactValue& value) const;
-  // What changes if the other part is seen wherever it may be: all the way between two edges, or up to anywhere.
-  template <int kChannels>
-  void AddTies(const std::vector<Part>& parts, const Receiver& receiver, ExactValue& value) const;
 
   const Scene& scene_;
   ExactOptions options_;

@@ -43,7 +43,6 @@ const std::vector<VisibleInterval>& Sweep::Run(const std::vector<Part>& parts, c
   left_handed_ = Cross(receiver.tangent, receiver.normal) < 0;
   visible_.clear();
   meetings_.clear();
-  ties_.clear();
   active_.clear();
   active_arcs_.clear();
   breaks_.clear();
@@ -146,12 +145,10 @@ bool Sweep::IsEdgeOn(const Part& part) const {
 std::int32_t Sweep::Nearest(double key, EdgeOn edge_on) {
   std::int32_t nearest = VisibleInterval::kNothing;
   double best = std::numeric_limits<double>::infinity();
-  candidates_.clear();
   for (const std::uint32_t p : far_filter_.NotFar(active_, key, kClose)) {
     ++comparisons_;
     if (edge_on == EdgeOn::kLeaveOut && IsEdgeOn((*parts_)[p])) continue;
     const double distance = DistanceOf(p, key);
-    candidates_.push_back({p, distance});
     bool nearer = nearest == VisibleInterval::kNothing || distance < best;
     if (nearest != VisibleInterval::kNothing) {
       const auto other = static_cast<std::uint32_t>(nearest);
@@ -229,39 +226,8 @@ void Sweep::Resolve(const Edge& from, const Edge& to, int depth) {
       return;
     }
   }
-  if (active_.size() > 1) {
-    AddTies(static_cast<std::uint32_t>(nearest), from, to);
-    AddTangencies(static_cast<std::uint32_t>(nearest), from.key, to.key);
-  }
+  if (active_.size() > 1) AddTangencies(static_cast<std::uint32_t>(nearest), from.key, to.key);
   Emit(from, nearest);
-}
-
-void Sweep::AddTies(std::uint32_t nearest, const Edge& from, const Edge& to) {
-  const double key = 0.5 * (from.key + to.key);
-  const auto found = std::find_if(candidates_.begin(), candidates_.end(),
-                                  [&](const Candidate& candidate) { return candidate.part == nearest; });
-  if (found == candidates_.end()) return;
-  const Candidate seen = *found;
-  for (const Candidate& candidate : candidates_) {
-    if (candidate.part == nearest || !MayBeNearer(candidate, seen, key)) continue;
-    // A line is nearest at its foot, at most by the root of 2 nearer than in the middle and at both ends.
-    const double distance = std::max(seen.distance, candidate.distance);
-    const double nearness = 2 * std::max({from.q, to.q, distance > 0 ? 1 / distance : 0});
-    ties_.push_back({from, to, nearness, nearest, candidate.part, SideOf(nearest), SideOf(candidate.part)});
-  }
-}
-
-bool Sweep::MayBeNearer(const Candidate& candidate, const Candidate& nearest, double key) const {
-  const Part &part = (*parts_)[candidate.part], &seen = (*parts_)[nearest.part];
-  const Element &e = scene_.element(part.element), &f = scene_.element(seen.element);
-  if (e.carrier == f.carrier || FollowOneBend(scene_, e, f)) return false;
-  if (candidate.distance == 0 && nearest.distance == 0) {
-    // Both pass through the receiver: of two in one direction the more curved one is in front.
-    const double known = 4 * scene_.coordinate_error();
-    return part.lean == seen.lean &&
-           std::abs(part.through - seen.through) <= known / e.length + known / f.length + kSameKey;
-  }
-  return MayMeet(candidate.part, candidate.distance, nearest.part, nearest.distance, key);
 }
 
 void Sweep::AddTangencies(std::uint32_t nearest, double low, double high) {
@@ -352,14 +318,13 @@ void Sweep::Emit(const Edge& from, std::int32_t part) {
   VisibleInterval interval;
   interval.begin = BreakBetween(from, part);
   interval.part = part;
-  if (part != VisibleInterval::kNothing) interval.side = SideOf(static_cast<std::uint32_t>(part));
+  if (part != VisibleInterval::kNothing) {
+    // An element that runs counter-clockwise around the receiver has it on its left; theta runs clockwise.
+    const auto p = static_cast<std::size_t>(part);
+    const bool counter_clockwise = (last_rank_[p] < first_rank_[p]) != left_handed_;
+    interval.side = counter_clockwise ? Side::kFront : Side::kBack;
+  }
   visible_.push_back(interval);
-}
-
-Side Sweep::SideOf(std::uint32_t part) const {
-  // An element that runs counter-clockwise around the receiver has it on its left; theta runs clockwise.
-  const bool counter_clockwise = (last_rank_[part] < first_rank_[part]) != left_handed_;
-  return counter_clockwise ? Side::kFront : Side::kBack;
 }
 
 Edge Sweep::BreakBetween(const Edge& from, std::int32_t part) const {

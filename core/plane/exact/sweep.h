@@ -39,19 +39,6 @@ class Sweep {
   };
   const std::vector<Meeting>& meetings() const { return meetings_; }
 
-  // Directions in which two parts are so close behind each other that rounding decides which one is seen. Of the last
-  // run.
-  struct Tie {
-    Edge from;
-    Edge to;
-    double nearness;      // 1/distance, at most.
-    std::uint32_t shown;  // Parts, and the sides of them that are seen.
-    std::uint32_t other;
-    Side shown_side;
-    Side other_side;
-  };
-  const std::vector<Tie>& ties() const { return ties_; }
-
   // Parts that were compared with another one so far.
   double comparisons() const { return comparisons_; }
 
@@ -62,20 +49,11 @@ class Sweep {
     double uncertain;  // Of the key.
   };
 
-  // A part in one direction.
-  struct Candidate {
-    std::uint32_t part;
-    double distance;
-  };
-
   void SortBreaks(double curvature);
   void Resolve(const Edge& from, const Edge& to, int depth);
   enum class EdgeOn { kCount, kLeaveOut };
   // Of the active parts, in the direction of a key.
   std::int32_t Nearest(double key, EdgeOn edge_on);
-  // Of the part that the last call of Nearest found, between two edges.
-  void AddTies(std::uint32_t nearest, const Edge& from, const Edge& to);
-  bool MayBeNearer(const Candidate& candidate, const Candidate& nearest, double key) const;
   bool IsEdgeOn(const Part& part) const;
   // Between two edges in one direction.
   void ResolveCoinciding(const Edge& from, const Edge& to);
@@ -95,7 +73,6 @@ class Sweep {
   // How far an edge's key may be off.
   double Uncertainty(const Edge& edge) const;
   void Emit(const Edge& from, std::int32_t part);
-  Side SideOf(std::uint32_t part) const;
   // What parts the last visible part from the next: `from`, unless they cross in its direction.
   Edge BreakBetween(const Edge& from, std::int32_t part) const;
   // The crossing of `nearest` with another active part, one of them an arc, that is next to the middle between two
@@ -117,8 +94,6 @@ class Sweep {
   std::vector<Edge> crossings_;
   std::vector<VisibleInterval> visible_;
   std::vector<Meeting> meetings_;
-  std::vector<Tie> ties_;
-  std::vector<Candidate> candidates_;  // That Nearest looked at last.
   double comparisons_ = 0;
 };
 

@@ -14,6 +14,7 @@
 #include "core/plane/path_tracing/emitter_sights.h"
 #include "core/plane/path_tracing/emitter_tree.h"
 #include "core/plane/path_tracing/vertex.h"
+#include "core/plane/ray_caster.h"
 #include "core/scene/scene.h"
 
 namespace flatlight {
@@ -56,8 +57,9 @@ class EmitterSampler {
     View(const EmitterSampler& sampler, const Vertex& vertex, const EmitterSight& sight);
     View(const View&) = delete;
     View& operator=(const View&) = delete;
-    // For a vertex from which many samples will be asked: takes longer, and then chooses better among very many.
-    void LookCloser();
+    // For a vertex from which many samples will be asked: takes longer, casting a ray to each of up to some hundred
+    // pieces or so, and then chooses better among many.
+    void LookCloser(const RayCaster& caster);
 
     // No emitter can light the vertex, certain light aside.
     bool empty() const { return total_ == 0; }
@@ -104,6 +106,7 @@ class EmitterSampler {
     };
     Seen See(std::size_t piece) const;
     SurfacePoint PlaceOn(std::size_t piece, double u) const;
+    SurfacePoint MiddleOf(const Group& group) const;
     bool Choose(double u, Choice& choice) const;
     bool ChooseInLeaf(const EmitterTree::Leaf& leaf, Choice& choice) const;
     static bool ChooseAmong(std::span<const Seen> seen, std::uint32_t first, double total, double u, Choice& choice);

@@ -20,7 +20,7 @@ class EmitterTree {
   // The emitters of a leaf are to be weighed one by one.
   static constexpr std::uint32_t kLeafSize = 4;
   // OpenNear opens clusters that seem larger than this, half their size over their distance, while there are fewer than
-  // so many.
+  // so many; and all, if there are no more emitters.
   static constexpr double kOpenAngle = 0.25;
   static constexpr std::size_t kMostClusters = 256;
 
@@ -58,6 +58,7 @@ class EmitterTree {
     if (nodes_.empty()) return;
     std::vector<std::uint32_t> open{0};
     std::size_t visited = 0;
+    const bool few = order_.size() <= kMostClusters;
     while (!open.empty()) {
       const std::uint32_t cluster = open.back();
       const Node& node = nodes_[cluster];
@@ -65,7 +66,7 @@ class EmitterTree {
       const double guess = Guess(node, vertex);
       if (guess == 0) continue;
       const double distance_squared = LengthSquared(node.middle - vertex.at.position);
-      const bool near = node.radius_squared > kOpenAngle * kOpenAngle * distance_squared;
+      const bool near = few || node.radius_squared > kOpenAngle * kOpenAngle * distance_squared;
       if (node.count == 0 && near && visited + open.size() < kMostClusters) {
         open.push_back(node.first + 1);
         open.push_back(node.first);

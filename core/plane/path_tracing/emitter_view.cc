@@ -2,11 +2,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include "core/plane/path_tracing/emitter_sampler.h"
 #include "core/scene/element_frame.h"
 
 namespace flatlight {
+namespace {
+
+// Of a piece's weight, where its middle is hidden: what a closer look leaves to those of its points that are not.
+constexpr double kBlockedShare = 0.25;
+constexpr double kSurely = 1;
+
+}  // namespace
 
 EmitterSampler::View::View(const EmitterSampler& sampler, const Vertex& vertex, const EmitterSight& sight)
     : sampler_(sampler), vertex_(vertex) {
@@ -32,20 +41,48 @@ EmitterSampler::View::View(const EmitterSampler& sampler, const Vertex& vertex, 
   sufficient_ = !by_length && total_ <= 2 * dimmest;
 }
 
-void EmitterSampler::View::LookCloser() {
+void EmitterSampler::View::LookCloser(const RayCaster& caster) {
   if (sampler_.weighs()) return;
-  total_ = 0;
   sampler_.tree_.OpenNear(vertex_, [&](std::uint32_t cluster, double guess, const EmitterTree::Leaf& leaf) {
     for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
       const Seen seen = See(i);
-      if (seen.weight == 0) continue;
-      total_ += seen.weight;
-      groups_.push_back({total_, i, kOnePiece, seen});
+      if (seen.weight > 0) groups_.push_back({seen.weight, i, kOnePiece, seen});
     }
-    if (leaf.count > 0) return;
-    total_ += guess;
-    groups_.push_back({total_, sampler_.tree_.Begin(cluster), cluster, {}});
+    if (leaf.count == 0) groups_.push_back({guess, sampler_.tree_.Begin(cluster), cluster, {}});
   });
+  std::vector<SurfacePoint> places;
+  for (const Group& group : groups_)
+    if (group.cluster == kOnePiece) places.push_back(MiddleOf(group));
+  const std::vector<SurfacePoint> here(places.size(), vertex_.at);
+  const std::unique_ptr<bool[]> visible(new bool[places.size()]);
+  caster.Visible(here, places, {visible.get(), places.size()});
+  total_ = 0;
+  // What is seen, by these rays: irradiance, and its integral with another factor of radiance.
+  double likely = 0, squared = 0;
+  bool all_known = true;
+  std::size_t tested = 0;
+  for (Group& group : groups_) {
+    double weight = group.weight_end;
+    if (group.cluster != kOnePiece || group.seen.range.kind == EmitterRange::Kind::kLength) {
+      all_known = false;
+      tested += group.cluster == kOnePiece ? 1 : 0;
+    } else if (visible[tested++]) {
+      likely += weight;
+      squared += weight * sampler_.pieces_[group.first].brightness;
+    } else {
+      weight *= kBlockedShare;
+    }
+    group.weight_end = total_ += weight;
+  }
+  sufficient_ = all_known && total_ * likely <= kSurely * (2 * squared);
+}
+
+SurfacePoint EmitterSampler::View::MiddleOf(const Group& group) const {
+  const Piece& piece = sampler_.pieces_[group.first];
+  const EmitterRange& range = group.seen.range;
+  if (range.kind == EmitterRange::Kind::kLength) return {FrameAt(piece.element, 0.5).position, piece.id};
+  const double sine = std::clamp(range.low + 0.5 * range.width, -1.0, 1.0);
+  return {PointInDirection(piece.element, range, vertex_, vertex_.Direction(sine, CosineOf(sine))), piece.id};
 }
 
 EmitterSampler::View::Seen EmitterSampler::View::See(std::size_t index) const {

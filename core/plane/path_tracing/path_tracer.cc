@@ -31,7 +31,7 @@ PathTracer::Start::Start(const PathTracer& tracer, const Receiver& receiver, con
       view_(tracer.emitters_, vertex_, sight),
       half_angle_(receiver.half_angle) {
   if (half_angle_ > 0) return;
-  view_.LookCloser();
+  view_.LookCloser(*tracer.caster_);
   double rays = 0;  // Not counted: how often a point's paths are begun depends on how work is cut.
   tracer.chains_.Find(ChainEffort::kFine, vertex_.at, vertex_.normal, tracer.MostBounces(), rays, chained_);
 }

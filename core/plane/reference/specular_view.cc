@@ -113,20 +113,8 @@ const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
   const auto way = std::make_shared<const SpecularWay>();
   const auto directions =
       std::make_shared<const Directions>(Directions{-0.5 * std::numbers::pi, 0.5 * std::numbers::pi, false, nullptr});
-  const auto line = [&](double x) -> std::optional<DirectedLine> {
-    const SinCosValue turn = SinCos(directions->At(x));
-    const Vector2 direction = turn.sin * receiver.tangent + turn.cos * receiver.normal;
-    return DirectedLine{direction, Cross(direction, receiver.position - Point2{})};
-  };
-  LineFamily::Fit(
-      0, 1, line, [](double, double) { return true; },
-      [&](const LineFamily& lines) {
-        Push(receiver, {.way = way,
-                        .directions = directions,
-                        .lines = lines,
-                        .begin = lines.begin + LineFamily::kOverlap,
-                        .end = lines.end - LineFamily::kOverlap});
-      });
+  Fan(
+      receiver, way, directions, 0, 1, [](double, double) { return true; }, LineFit{});
   std::size_t grown = 0;
   while (!beams_.empty()) {
     const Beam beam = beams_.top();
@@ -139,6 +127,27 @@ const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
     Grow(receiver, beam);
   }
   return pieces_;
+}
+
+template <typename Hopeful>
+void SpecularView::Fan(const Receiver& receiver, const std::shared_ptr<const SpecularWay>& way,
+                       const std::shared_ptr<const Directions>& directions, double low, double high,
+                       const Hopeful& hopeful, const LineFit& fit) {
+  const auto line = [&](double x) -> std::optional<DirectedLine> {
+    const std::optional<SpecularRay> ray = FollowWay(scene_, receiver, *way, directions->At(x));
+    if (!ray) return std::nullopt;
+    return DirectedLine{ray->direction, Cross(ray->direction, ray->from - Point2{})};
+  };
+  LineFamily::Fit(
+      low, high, line, hopeful,
+      [&](const LineFamily& lines) {
+        Push(receiver, {.way = way,
+                        .directions = directions,
+                        .lines = lines,
+                        .begin = lines.begin + LineFamily::kOverlap,
+                        .end = lines.end - LineFamily::kOverlap});
+      },
+      fit);
 }
 
 void SpecularView::Push(const Receiver& receiver, Beam beam) {
@@ -207,17 +216,9 @@ void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& m
   if (!specular || !Reflects(curve)) return;
   if (!std::holds_alternative<Dielectric>(curve.material)) return Turn(receiver, beam, met, false, begin, end);
   // Where total reflection begins.
-  std::array<double, Bernstein::kCount> squares{};
-  bool known = true;
-  for (std::size_t i = 0; i < squares.size() && known; ++i) {
-    const double x = begin + Bernstein::Nodes()[i] * (end - begin);
-    const std::optional<double> square = SquaredCosine(receiver, beam, met, true, x);
-    known = square.has_value();
-    squares[i] = square.value_or(0);
-  }
   std::vector<double> cuts(1, begin);
-  if (known) {
-    const Bernstein::RootList roots = Bernstein::Through(squares).Roots();
+  if (const auto squares = SquaresBehind(receiver, beam, met, begin, end)) {
+    const Bernstein::RootList roots = Bernstein::Through(*squares).Roots();
     const auto crosses = [&](double x) { return SquaredCosine(receiver, beam, met, true, x).value_or(-1) > 0; };
     for (std::size_t i = 0; i < roots.count; ++i) {
       double low = begin + std::max(roots.t[i] - kRootWithin, 0.0) * (end - begin);
@@ -249,6 +250,19 @@ std::optional<double> SpecularView::SquaredCosine(const Receiver& receiver, cons
   return (1 - sine) * (1 + sine);
 }
 
+std::optional<std::array<double, Bernstein::kCount>> SpecularView::SquaresBehind(const Receiver& receiver,
+                                                                                 const Beam& beam, const Met& met,
+                                                                                 double from, double to) const {
+  std::array<double, Bernstein::kCount> squares{};
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    const double x = from + Bernstein::Nodes()[i] * (to - from);
+    const std::optional<double> square = SquaredCosine(receiver, beam, met, true, x);
+    if (!square) return std::nullopt;
+    squares[i] = *square;
+  }
+  return squares;
+}
+
 void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& met, bool crosses, double begin,
                         double end) {
   const Element& element = scene_.element(met.element);
@@ -269,50 +283,29 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
     way->tint = way->tint * curve.reflectance;
   }
   const std::shared_ptr<const SpecularWay> shared = way;
-  std::shared_ptr<const Directions> directions = beam.directions;
-  double low = begin, high = end;
-  for (const double x : {begin + kBeside * (end - begin), end - kBeside * (end - begin)}) {
-    const bool grazes = SquaredCosine(receiver, beam, met, false, x).value_or(0) < kGrazing;
-    const bool near_total = std::abs(SquaredCosine(receiver, beam, met, true, x).value_or(0)) < kGrazing;
-    if (low == 0 && high == 1 && directions != beam.directions) break;
-    if (!grazes && !near_total) continue;
-    directions = std::make_shared<const Directions>(Directions{begin, end, true, beam.directions});
-    low = 0, high = 1;
-  }
-  const auto line = [&](double x) -> std::optional<DirectedLine> {
-    const std::optional<SpecularRay> ray = FollowWay(scene_, receiver, *shared, directions->At(x));
-    if (!ray) return std::nullopt;
-    return DirectedLine{ray->direction, Cross(ray->direction, ray->from - Point2{})};
+  // Whether what follows moves as a root there.
+  const auto bends = [&](double x) {
+    return SquaredCosine(receiver, beam, met, false, x).value_or(0) < kGrazing ||
+           std::abs(SquaredCosine(receiver, beam, met, true, x).value_or(0)) < kGrazing;
   };
+  const double beside = kBeside * (end - begin);
+  const bool eased = bends(begin + beside) || bends(end - beside);
+  const std::shared_ptr<const Directions> directions =
+      eased ? std::make_shared<const Directions>(Directions{begin, end, true, beam.directions}) : beam.directions;
   // Whether some ray of the stretch may not be reflected totally.
   bool some_fail = false;
   const auto hopeful = [&](double from, double to) {
     some_fail = true;
     if (!crosses) return true;
-    std::array<double, Bernstein::kCount> squares{};
-    for (std::size_t i = 0; i < squares.size(); ++i) {
-      const double x = from + Bernstein::Nodes()[i] * (to - from);
-      const double in_beam = directions == beam.directions ? x : begin + (end - begin) * x * x * (3 - 2 * x);
-      const std::optional<double> square = SquaredCosine(receiver, beam, met, true, in_beam);
-      if (!square) return true;
-      squares[i] = *square;
-    }
-    return Bernstein::Through(squares).Max() > 0;
+    const auto outward = [&](double x) { return eased ? directions->Outward(x) : x; };
+    const auto squares = SquaresBehind(receiver, beam, met, outward(from), outward(to));
+    return !squares || Bernstein::Through(*squares).Max() > 0;
   };
   LineFit fit;
   // What carries little need not be known that well.
   fit.tolerance = std::clamp(kFit * options_.least_share / (beam.share * shared->tint.Max()), kBestFit, kWorstFit);
   fit.least_part = std::min(options_.least_share / most, 1e-3);
-  LineFamily::Fit(
-      low, high, line, hopeful,
-      [&](const LineFamily& lines) {
-        Push(receiver, {.way = shared,
-                        .directions = directions,
-                        .lines = lines,
-                        .begin = lines.begin + LineFamily::kOverlap,
-                        .end = lines.end - LineFamily::kOverlap});
-      },
-      fit);
+  Fan(receiver, shared, directions, eased ? 0 : begin, eased ? 1 : end, hopeful, fit);
   // What was given up beside where rays begin to fail.
   if (some_fail) lost_ += 2 * fit.least_part * most;
 }

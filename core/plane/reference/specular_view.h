@@ -3,6 +3,7 @@
 #ifndef FLATLIGHT_CORE_PLANE_REFERENCE_SPECULAR_VIEW_H_
 #define FLATLIGHT_CORE_PLANE_REFERENCE_SPECULAR_VIEW_H_
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -52,14 +53,13 @@ struct Directions {
   bool eased = false;
   std::shared_ptr<const Directions> outer;
 
-  double At(double x) const {
-    const double y = from + (to - from) * (eased ? x * x * (3 - 2 * x) : x);
-    return outer ? outer->At(y) : y;
-  }
+  // The number by which the outer knows the direction; theta, if there is none.
+  double Outward(double x) const { return from + (to - from) * (eased ? x * x * (3 - 2 * x) : x); }
+  double At(double x) const { return outer ? outer->At(Outward(x)) : Outward(x); }
   // d(theta)/dx.
   double Slope(double x) const {
     const double slope = (to - from) * (eased ? 6 * x * (1 - x) : 1);
-    return outer ? outer->Slope(from + (to - from) * (eased ? x * x * (3 - 2 * x) : x)) * slope : slope;
+    return outer ? outer->Slope(Outward(x)) * slope : slope;
   }
 };
 
@@ -133,6 +133,14 @@ class SpecularView {
   // reflected.
   std::optional<double> SquaredCosine(const Receiver& receiver, const Beam& beam, const Met& met, bool behind,
                                       double x) const;
+  // The same at the places that a polynomial goes through between two numbers; absent if one of them is.
+  std::optional<std::array<double, Bernstein::kCount>> SquaresBehind(const Receiver& receiver, const Beam& beam,
+                                                                     const Met& met, double from, double to) const;
+  // Pushes the beams of a way's rays between two numbers of directions; `hopeful` as in LineFamily::Fit.
+  template <typename Hopeful>
+  void Fan(const Receiver& receiver, const std::shared_ptr<const SpecularWay>& way,
+           const std::shared_ptr<const Directions>& directions, double low, double high, const Hopeful& hopeful,
+           const LineFit& fit);
   void Push(const Receiver& receiver, Beam beam);
 
   const RayCaster& caster_;

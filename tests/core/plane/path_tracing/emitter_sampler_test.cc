@@ -124,12 +124,13 @@ TEST(EmitterSamplerTest, SamplesHaveTheDensityOfHits) {
     const std::shared_ptr<const Scene> scene = maker.Build();
     std::vector<ElementId> pieces;
     for (std::size_t e = 0; e < scene->elements().size(); ++e) pieces.push_back(static_cast<ElementId>(e));
+    const RayCaster caster(scene);
     const EmitterSampler sampler(scene, pieces);
     int sampled = 0;
     for (int k = 0; k < 40; ++k) {
       const Vertex vertex{{{place(random), place(random)}, ElementId::kNone}, Normalized(Vector2{place(random), 0.3})};
       EmitterSampler::View view(sampler, vertex, {});
-      if (k % 2 == 1) view.LookCloser();
+      if (k % 2 == 1) view.LookCloser(caster);
       for (const ElementId id : pieces) {
         const Element& element = scene->element(id);
         const EmitterRange range =
