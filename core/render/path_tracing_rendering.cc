@@ -149,6 +149,7 @@ std::shared_ptr<const Field> PathTracingRendering::Snapshot() const {
   const double scale = scene_->frame().radiance_scale;
   // Rays meet the arcs that follow Béziers: where there is hardly any noise, that counts.
   const double followed = scene_->bezier_distance();
+  const std::vector<ProgressiveSampling::PointValue> of_points = sampling_.AllValues();
   std::size_t point = 0;
   for (const Probe& probe : scene_->probes()) {
     ProbeField values;
@@ -156,7 +157,7 @@ std::shared_ptr<const Field> PathTracingRendering::Snapshot() const {
     values.standard_error.reserve(probe.receivers.size() * channels);
     values.samples.reserve(probe.receivers.size());
     for (std::size_t i = 0; i < probe.receivers.size(); ++i, ++point) {
-      const ProgressiveSampling::PointValue value = sampling_.Value(point);
+      const ProgressiveSampling::PointValue& value = of_points[point];
       values.samples.push_back(value.samples);
       for (std::size_t c = 0; c < channels; ++c) {
         MeanEstimate estimate;

@@ -54,19 +54,32 @@ void PointBlocks::Resume() {
   }
 }
 
+std::array<double, kReplicates> PointBlocks::Replicates(std::size_t point, std::size_t channel) const {
+  std::array<double, kReplicates> means;
+  for (std::size_t i = 0; i < kReplicates; ++i)
+    means[i] = trees_[point].Total(channel * kReplicates + i) / static_cast<double>(blocks(point));
+  return means;
+}
+
+Missable PointBlocks::OfMeans(std::size_t point, const Missable& missable) const {
+  const auto blocks = static_cast<double>(this->blocks(point));
+  Missable of_means = missable;
+  of_means.seen /= blocks;
+  of_means.largest /= blocks;
+  return of_means;
+}
+
 MeanEstimate PointBlocks::Estimate(std::size_t point, std::size_t channel, Halves halves, const Missable& missable,
                                    const NearbyVariance& nearby) const {
-  std::array<double, kReplicates> means;
+  const std::array<double, kReplicates> means = Replicates(point, channel);
   const auto blocks = static_cast<double>(this->blocks(point));
   const std::size_t count = halves.count() * kHalfReplicates;
-  for (std::size_t i = 0; i < count; ++i) {
-    means[i] = trees_[point].Total(channel * kReplicates + halves.first * kHalfReplicates + i) / blocks;
-  }
-  Missable of_value = missable;
-  of_value.seen /= blocks;
-  of_value.largest /= blocks;
-  of_value.variance /= blocks * static_cast<double>(count);
-  MeanEstimate estimate = EstimateMean(std::span(means).first(count), of_value, {nearby.mean / blocks, nearby.share});
+  Missable of_means = OfMeans(point, missable);
+  of_means.variance /= blocks * static_cast<double>(count);
+  NearbyVariance of_values = nearby;
+  of_values.mean /= blocks;
+  MeanEstimate estimate =
+      EstimateMean(std::span(means).subspan(halves.first * kHalfReplicates, count), of_means, of_values);
   estimate.rounding = doubt(point, channel).rounding;
   return estimate;
 }

@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_CORE_RENDER_POINT_BLOCKS_H_
 #define FLATLIGHT_CORE_RENDER_POINT_BLOCKS_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -58,6 +59,10 @@ class PointBlocks {
     std::size_t last = 2;
     std::size_t count() const { return last - first; }
   };
+  // The means of the replicates of a point that has blocks.
+  std::array<double, kReplicates> Replicates(std::size_t point, std::size_t channel) const;
+  // Of a point that has blocks; of single samples, to of means of that many.
+  Missable OfMeans(std::size_t point, const Missable& missable) const;
   // The estimate from some halves of a point that has blocks. `missable` and `nearby` are of single samples, not of
   // replicates' means.
   MeanEstimate Estimate(std::size_t point, std::size_t channel, Halves halves, const Missable& missable,

@@ -178,8 +178,7 @@ void ProgressiveSampling::PlanRound(Clock::Time now) {
 }
 
 void ProgressiveSampling::UpdateWorstError() {
-  std::vector<PointValue> values(blocks_.points());
-  for (std::size_t point = 0; point < values.size(); ++point) values[point] = Value(point);
+  const std::vector<PointValue> values = AllValues();
   const ProbeMeans means = MeansOverProbes([&](std::size_t point) -> const auto& { return values[point].estimates; });
   double worst = 0;
   for (std::size_t point = 0; point < values.size(); ++point) {
@@ -254,30 +253,82 @@ Missable ProgressiveSampling::MissableAt(std::size_t point, std::size_t channel,
   return missable;
 }
 
-CrossedHalves::HalfEstimate ProgressiveSampling::EstimateOf(std::size_t point, Halves halves) const {
+ProgressiveSampling::Misses ProgressiveSampling::MissesOf(std::size_t probe) const {
+  Misses misses;
+  if (!halves_.empty()) return misses;
+  misses.first = probe == 0 ? 0 : probe_ends_[probe - 1];
+  misses.at_points.resize((probe_ends_[probe] - misses.first) * channels());
+  for (std::size_t p = misses.first; p < probe_ends_[probe]; ++p) {
+    if (blocks_.blocks(p) == 0) continue;
+    for (std::size_t c = 0; c < channels(); ++c) {
+      const Missable missable = blocks_.OfMeans(p, MissableAt(p, c, {0, 2}));
+      if (missable.largest == 0) continue;
+      misses.at_points[(p - misses.first) * channels() + c].Add(blocks_.Replicates(p, c), missable.Event());
+    }
+  }
+  return misses;
+}
+
+std::optional<double> ProgressiveSampling::MissedAt(std::size_t point, std::size_t channel,
+                                                    const Misses& misses) const {
+  if (misses.at_points.empty()) return std::nullopt;
+  SharedMisses nearby;
+  const auto [begin, end] = Neighbours(point);
+  for (std::size_t p = begin; p < end; ++p) nearby.Add(misses.at_points[(p - misses.first) * channels() + channel]);
+  const Missable missable = blocks_.OfMeans(point, MissableAt(point, channel, {0, 2}));
+  std::optional<double> missed =
+      nearby.MeanSquare((nearby.any() ? missable.Event() : missable.largest) / kHalfReplicates);
+  if (!missed) return missed;
+  // A shadow's edge is met by a point that its neighbours know nothing of: any of them may be the one.
+  const double step = blocks_.doubt(point, channel).step / static_cast<double>(blocks_.blocks(point));
+  const double edge = missable.share * MostMissed(step, kReplicates);
+  return *missed + edge * edge;
+}
+
+CrossedHalves::HalfEstimate ProgressiveSampling::EstimateOf(std::size_t point, Halves halves,
+                                                            const Misses& misses) const {
   CrossedHalves::HalfEstimate estimates;
   for (std::size_t c = 0; c < channels(); ++c) {
     // Where points stop by themselves each goes by its own: one among noisier ones would go on for their sake.
-    const NearbyVariance nearby = halves.count() == 2 ? NearbyAt(point, c) : NearbyVariance{};
+    NearbyVariance nearby;
+    if (halves.count() == 2) {
+      nearby = NearbyAt(point, c);
+      nearby.missed = MissedAt(point, c, misses);
+    }
     estimates.push_back(blocks_.Estimate(point, c, halves, MissableAt(point, c, halves), nearby));
   }
   return estimates;
 }
 
 std::array<CrossedHalves::HalfEstimate, 2> ProgressiveSampling::HalfEstimates(std::size_t point) const {
-  return {EstimateOf(point, {0, 1}), EstimateOf(point, {1, 2})};
+  return {EstimateOf(point, {0, 1}, {}), EstimateOf(point, {1, 2}, {})};
 }
 
 ProgressiveSampling::ProbeMeans ProgressiveSampling::CurrentMeans() const {
-  return MeansOverProbes([this](std::size_t point) { return Value(point).estimates; });
+  const std::vector<PointValue> values = AllValues();
+  return MeansOverProbes([&](std::size_t point) -> const auto& { return values[point].estimates; });
+}
+
+std::vector<ProgressiveSampling::PointValue> ProgressiveSampling::AllValues() const {
+  std::vector<PointValue> values;
+  values.reserve(blocks_.points());
+  for (std::size_t probe = 0; probe < probe_ends_.size(); ++probe) {
+    const Misses misses = MissesOf(probe);
+    while (values.size() < probe_ends_[probe]) values.push_back(Value(values.size(), misses));
+  }
+  return values;
 }
 
 ProgressiveSampling::PointValue ProgressiveSampling::Value(std::size_t point) const {
+  return Value(point, MissesOf(probe_of_point_[point]));
+}
+
+ProgressiveSampling::PointValue ProgressiveSampling::Value(std::size_t point, const Misses& misses) const {
   PointValue value;
   value.samples = static_cast<double>(blocks_.blocks(point)) * PointSampler::kBlockSamples;
   if (value.samples == 0) return value;
   if (halves_.empty()) {
-    value.estimates = EstimateOf(point, {0, 2});
+    value.estimates = EstimateOf(point, {0, 2}, misses);
     return value;
   }
   const auto halves = HalfEstimates(point);

@@ -15,6 +15,7 @@
 #include "core/render/point_sampler.h"
 #include "core/render/rendering.h"
 #include "core/statistics/crossed_halves.h"
+#include "core/statistics/shared_misses.h"
 
 namespace flatlight {
 
@@ -54,6 +55,8 @@ class ProgressiveSampling {
     double samples = 0;
   };
   PointValue Value(std::size_t point) const;
+  // Of all points: less work than one by one.
+  std::vector<PointValue> AllValues() const;
   std::size_t channels() const { return blocks_.channels(); }
   double rays() const { return blocks_.rays(); }
 
@@ -93,9 +96,19 @@ class ProgressiveSampling {
   // What samples may have missed at the point, as its neighbours tell by the same halves of their replicates.
   Missable MissableAt(std::size_t point, std::size_t channel, Halves halves) const;
   NearbyVariance NearbyAt(std::size_t point, std::size_t channel) const;
+  // What replicates that agree miss together, by points of a probe, then channel. (Counts are equal but while a round
+  // is under way.) Empty where points stop by themselves: each goes by its own then.
+  struct Misses {
+    std::size_t first = 0;  // Of the probe's points.
+    std::vector<SharedMisses> at_points;
+  };
+  Misses MissesOf(std::size_t probe) const;
+  // What those of a point have to expect, as its neighbours tell.
+  std::optional<double> MissedAt(std::size_t point, std::size_t channel, const Misses& misses) const;
   // The points [first, last) of the same probe that are near.
   std::pair<std::size_t, std::size_t> Neighbours(std::size_t point) const;
-  CrossedHalves::HalfEstimate EstimateOf(std::size_t point, Halves halves) const;
+  CrossedHalves::HalfEstimate EstimateOf(std::size_t point, Halves halves, const Misses& misses) const;
+  PointValue Value(std::size_t point, const Misses& misses) const;
   std::array<CrossedHalves::HalfEstimate, 2> HalfEstimates(std::size_t point) const;
   bool Active(std::size_t point) const { return !goal_.target_error.has_value() || !halves_[point].decided(); }
 

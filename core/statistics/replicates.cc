@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/statistics/shared_misses.h"
+
 namespace flatlight {
 namespace {
 
@@ -42,10 +44,15 @@ MeanEstimate EstimateMean(std::span<const double> values, const Missable& missab
   estimate.variance = share * (squares / ((n - 1) * n)) + (1 - share) * others;
   constexpr double kLeastShare = 1e-3;
   estimate.degrees_of_freedom = (n - 1) / std::max(share, kLeastShare);
-  // One value that has met the event makes the sum of squares (1 - 1/n) times its square.
-  const double event = std::max(missable.seen, missable.share * missable.largest);
-  if (squares < 0.25 * event * event) {
-    const double most = missable.largest * std::sqrt(2 / ((n + 2) * (n + 3)));
+  if (Agree(squares, missable.Event())) {
+    const double most = MostMissed(missable.largest, n);
+    if (nearby.missed) {
+      // Neighbours' variance is that of events which no value met here.
+      estimate.variance = squares / ((n - 1) * n);
+      estimate.degrees_of_freedom = n - 1;
+      estimate.unresolved = std::min(std::sqrt(*nearby.missed), most);
+      return estimate;
+    }
     const double frequent = share < 1 ? std::min(missable.variance, others) : missable.variance;
     const double doubt = std::clamp(std::sqrt(frequent), missable.share * most, most);
     // What neighbours tell of the variance has the doubt in it.

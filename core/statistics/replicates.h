@@ -4,9 +4,11 @@
 #ifndef FLATLIGHT_CORE_STATISTICS_REPLICATES_H_
 #define FLATLIGHT_CORE_STATISTICS_REPLICATES_H_
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 
 namespace flatlight {
@@ -40,6 +42,9 @@ struct Missable {
   double share = 1;
   // Of the mean, if events are as frequent as nearby.
   double variance = std::numeric_limits<double>::infinity();
+
+  // What values that agree have not met.
+  double Event() const { return std::max(seen, share * largest); }
 };
 
 // Variances of replicates' values at a point's neighbours. A variance that is told by few replicates is a noisy thing,
@@ -48,6 +53,8 @@ struct Missable {
 struct NearbyVariance {
   double mean = 0;   // Of single values.
   double share = 1;  // 1: the point's own alone.
+  // Mean square of what values that agree are off by together (SharedMisses); absent if nothing is known of it.
+  std::optional<double> missed = {};
 };
 
 // Tells from pairs of independent variances, of one point each, how far points differ: what the two have in common is
@@ -71,7 +78,8 @@ class NearbyVariances {
 // Stratified samples place an edge to within one sample, and rare events are missed, so values may all agree and all be
 // wrong. Let a share d of such values have met the event, all d alike likely: if none of n has, the mean square of d is
 // 2/((n + 2)(n + 3)) (Laplace's rule of succession), and the doubt that follows is added: that of the largest event,
-// less where samples nearby tell of rarer or smaller ones. If some values have met it, their spread tells.
+// less where samples nearby tell of rarer or smaller ones, or what alike points tell of those whose values agree. If
+// some values have met it, their spread tells.
 MeanEstimate EstimateMean(std::span<const double> values, const Missable& missable, const NearbyVariance& nearby = {});
 
 // The same, where nothing is known from nearby of an event that changes a value by `step`.

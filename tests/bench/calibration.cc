@@ -164,7 +164,7 @@ void Measure(const NamedScene& scene, bool direct, const std::string& only_metho
     if (name.find(only_method) == std::string::npos) continue;
     for (const std::uint32_t samples : {16u, 64u, 256u, 1024u}) {
       // Ray tracing begins with 256.
-      if (rays ? samples < 256 : samples > 256) continue;
+      if (rays && samples < 256) continue;
       Settings settings = Sampled(samples);
       settings.method = method;
       if (rays) settings.derivatives = direct ? Derivatives::kHessian : Derivatives::kGradient;

@@ -95,8 +95,13 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
       }
       add_weights(u, weights);
     };
+    // Where the piece ends at the receiver itself, in a corner, all that is seen of it may be there: its end tells.
+    const auto sine_at = [&](double u) {
+      if (u == piece.begin.u) return piece.begin.edge.s;
+      return u == piece.end.u ? piece.end.edge.s : SineTo(chart, receiver, u);
+    };
     const auto rest = [&](double u, double begin, double end) {
-      add_weights(u, {SineBetween(chart, receiver, begin, end), 0, 0});
+      add_weights(u, {std::abs(sine_at(end) - sine_at(begin)), 0, 0});
     };
     ForEachPoint(chart, receiver.position, radius != 0, count_, from, to, 0, add, rest);
     if (!errors) continue;

@@ -35,14 +35,10 @@ bool EndErrors::IsDoubtful(const Receiver& receiver, const VisiblePiece& piece) 
                              BoundErrors(piece.end.edge, receiver.curvature, known).s;
 }
 
-double SineBetween(const Chart& chart, const Receiver& receiver, double low, double high) {
-  double sine[2];
-  for (int i = 0; i < 2; ++i) {
-    const Vector2 d = chart.At(i == 0 ? low : high).position - receiver.position;
-    const double length = Length(d);
-    sine[i] = length > 0 ? Dot(receiver.tangent, d) / length : 0;
-  }
-  return std::abs(sine[1] - sine[0]);
+double SineTo(const Chart& chart, const Receiver& receiver, double u) {
+  const Vector2 d = chart.At(u).position - receiver.position;
+  const double length = Length(d);
+  return length > 0 ? Dot(receiver.tangent, d) / length : 0;
 }
 
 void RowBuilder::Build(const PanelMesh& mesh, const Receiver& receiver, bool high, Row* before, Row& row) {
@@ -200,7 +196,7 @@ void RowBuilder::AddStretch(const PanelMesh& mesh, const Receiver& receiver, con
       };
       // What is left of a panel that runs into the receiver.
       const auto rest = [&](double u, double begin, double end) {
-        add_weight(u, SineBetween(chart, receiver, begin, end));
+        add_weight(u, std::abs(SineTo(chart, receiver, end) - SineTo(chart, receiver, begin)));
       };
       ForEachPoint(chart, receiver.position, radius != 0, high ? high_count_ : count_, from, to, 0, add, rest);
     }

@@ -119,8 +119,8 @@ class EndErrors {
   double joints_ = 0;
 };
 
-// The difference of the sines of the directions to two places of an element.
-double SineBetween(const Chart& chart, const Receiver& receiver, double low, double high);
+// The sine of the direction to a place of an element; 0 if the receiver is there.
+double SineTo(const Chart& chart, const Receiver& receiver, double u);
 
 }  // namespace flatlight
 

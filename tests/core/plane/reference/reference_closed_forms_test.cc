@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tests/support/transport/scene_maker.h"
 #include "tests/support/transport/solve_reference.h"
@@ -45,6 +46,24 @@ TEST(ReferenceClosedFormsTest, AFurnaceIsLitAlikeEverywhere) {
     SceneMaker maker;
     maker.Arc("wall", {{0, 0}, 1, 0, kTurn}, {.reflectance = {reflectance}, .radiance = {1}}).Probe("wall", 7);
     ExpectEverywhere(SolveReference(maker.Build(), Options(1e-8)), 2 / (1 - reflectance), 1e-8);
+  }
+}
+
+// A point in a corner sees what is seen just beyond it: half and more of that may be the wall behind, at no distance.
+TEST(ReferenceClosedFormsTest, AFurnaceIsLitInItsCornersToo) {
+  const std::vector<Point2> square = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+  const std::vector<Point2> sharp = {{0, 0}, {3, -1}, {2, 0}, {3, 1}};  // Its sides are as long as their opposites.
+  for (const std::vector<Point2>& corners : {square, sharp}) {
+    SceneMaker maker;
+    maker.Polyline("wall", corners, true, {.reflectance = {0.5}, .radiance = {1}}).Probe("wall", 2);
+    ReferenceOptions options = Options(1e-8);
+    options.derivatives = 0;
+    const SolvedReference solved = SolveReference(maker.Build(), options);
+    ASSERT_EQ(solved.values.size(), 2u);
+    for (const ExactValue& value : solved.values) {
+      EXPECT_LE(std::abs(value.irradiance[0] - 4), value.irradiance_error[0]);
+      EXPECT_LE(value.irradiance_error[0], 1e-8 * 4);
+    }
   }
 }
 
