@@ -2,12 +2,29 @@
 #include "server/app/options.h"
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "server/store/user_store.h"
 
 namespace flatlight {
+namespace {
+
+// An option that may repeat, of one value each time, which `set` takes or refuses. `texts` must outlive the parsing.
+void AddRepeated(CLI::App& app, const std::string& name, const std::string& type, const std::string& help,
+                 std::vector<std::string>& texts, const std::function<absl::Status(const std::string&)>& set) {
+  app.add_option(name, texts, help)
+      ->type_name(type)
+      ->allow_extra_args(false)
+      ->each([name, set](const std::string& text) {
+        const absl::Status done = set(text);
+        if (!done.ok()) throw CLI::ValidationError(name, std::string(done.message()));
+      });
+}
+
+}  // namespace
 
 std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int processors, const std::string& version) {
   constexpr int kMaxThreads = 1024;
@@ -46,37 +63,19 @@ std::variant<DaemonOptions, int> ParseDaemonOptions(int argc, char** argv, int p
   app.add_option("--metrics", options.metrics,
                  "HOST:PORT on this machine: serve metrics for Prometheus at http://HOST:PORT/metrics");
   app.add_option("--log", options.log, "a file that gets a line of JSON for each call, or - for standard error");
-  std::vector<std::string> quotas;
-  app.add_option("--quota", quotas,
-                 "what each user of a role may have, as student.jobs=50 or grader.watches=none; may repeat. Limits: " +
-                     QuotaNames())
-      ->type_name("ROLE.LIMIT=VALUE")
-      ->allow_extra_args(false)
-      ->each([&options](const std::string& text) {
-        const absl::Status set = options.quotas.Set(text);
-        if (!set.ok()) throw CLI::ValidationError("--quota", std::string(set.message()));
-      });
-  std::vector<std::string> keep;
-  app.add_option("--keep", keep,
-                 "how long ended jobs of a class (interactive, graded, regrade) are kept, as interactive=7d or "
-                 "graded=none (for ever); may repeat; default: interactive=30d, the others for ever")
-      ->type_name("CLASS=DURATION")
-      ->allow_extra_args(false)
-      ->each([&options](const std::string& text) {
-        const absl::Status set = options.retention.Set(text);
-        if (!set.ok()) throw CLI::ValidationError("--keep", std::string(set.message()));
-      });
-  std::vector<std::string> webhook_hosts;
-  app.add_option(
-         "--webhook-allow", webhook_hosts,
-         "a host that may be told of the end of jobs (ports 80 and 443, or the one given); may repeat; default: "
-         "none. A name must stand for a public address, or for one that is itself allowed so")
-      ->type_name("HOST[:PORT]")
-      ->allow_extra_args(false)
-      ->each([&options](const std::string& text) {
-        const absl::Status allowed = options.webhook_rules.Allow(text);
-        if (!allowed.ok()) throw CLI::ValidationError("--webhook-allow", std::string(allowed.message()));
-      });
+  std::vector<std::string> quotas, keep, webhook_hosts;
+  AddRepeated(app, "--quota", "ROLE.LIMIT=VALUE",
+              "what each user of a role may have, as student.jobs=50 or grader.watches=none; may repeat. Limits: " +
+                  QuotaNames(),
+              quotas, [&options](const std::string& text) { return options.quotas.Set(text); });
+  AddRepeated(app, "--keep", "CLASS=DURATION",
+              "how long ended jobs of a class (interactive, graded, regrade) are kept, as interactive=7d or "
+              "graded=none (for ever); may repeat; default: interactive=30d, the others for ever",
+              keep, [&options](const std::string& text) { return options.retention.Set(text); });
+  AddRepeated(app, "--webhook-allow", "HOST[:PORT]",
+              "a host that may be told of the end of jobs (ports 80 and 443, or the one given); may repeat; default: "
+              "none. A name must stand for a public address, or for one that is itself allowed so",
+              webhook_hosts, [&options](const std::string& text) { return options.webhook_rules.Allow(text); });
   app.add_flag("--exit-with-parent", options.exit_with_parent, "end when standard input ends");
   CLI::App* backup =
       app.add_subcommand("backup", "copy the folder of a server, which may be running: --data DIR BACKUP");

@@ -47,14 +47,9 @@ void CpuLedger::TurnToToday() {
     // A day that cannot be read counts from now on.
     storage_
         ->Read([&](Database& database) -> absl::Status {
-          Statement rows = database.Prepare("SELECT user, seconds FROM cpu_days WHERE day = ?");
-          rows.Bind(today);
-          while (true) {
-            const auto row = rows.Step();
-            if (!row.ok()) return row.status();
-            if (!*row) return absl::OkStatus();
-            used_[rows.Bytes(0)] = rows.Real(1);
-          }
+          return database.Prepare("SELECT user, seconds FROM cpu_days WHERE day = ?")
+              .Bind(today)
+              .ForEachRow([&](const Statement& row) { used_[row.Bytes(0)] = row.Real(1); });
         })
         .IgnoreError();
   }

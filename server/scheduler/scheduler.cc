@@ -36,7 +36,7 @@ absl::StatusOr<JobRecord> Scheduler::Submit(std::shared_ptr<const JobSpec> spec,
   auto run = std::make_shared<JobRun>(clock_);
   run->spec = std::move(spec);
   run->scene = std::move(scene);
-  const auto draining = MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down");
+  const auto draining = MakeDrainingError();
   {
     const std::lock_guard lock(mutex_);
     if (stopping_) return draining;

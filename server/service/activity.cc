@@ -50,6 +50,7 @@ absl::StatusOr<v1::GetActivityResponse> GetActivity(Backend& backend, const Call
   response.set_job_cpu_seconds(telemetry.metrics().job_cpu_seconds());
   response.set_rays(telemetry.metrics().rays());
   response.set_resident_bytes(process.resident_bytes);
+  response.set_heap_bytes(process.heap_bytes);
   response.set_watches(now.watches);
   SchedulerLoad::User others;
   bool has_others = false;

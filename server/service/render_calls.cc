@@ -178,7 +178,7 @@ absl::StatusOr<v1::Job> ControlJob(Backend& backend, const Caller& caller, const
 
 absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const v1::CreateJobRequest& request,
                                   const Proceed& proceed) {
-  if (backend.draining) return MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down");
+  if (backend.draining) return MakeDrainingError();
   const auto job_class = JobClassFromProto(request.job_class());
   if (!job_class.ok()) return job_class.status();
   const auto key = KeyOf(caller, request);

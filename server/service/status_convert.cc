@@ -49,9 +49,12 @@ void AddQuota(const QuotaViolation& quota, const std::string& message, google::r
   violation->set_subject(quota.subject);
   violation->set_description(message);
   status.add_details()->PackFrom(failure);
+}
+
+void AddRetry(std::chrono::milliseconds after, google::rpc::Status& status) {
   google::rpc::RetryInfo retry;
-  retry.mutable_retry_delay()->set_seconds(quota.retry_after.count() / 1000);
-  retry.mutable_retry_delay()->set_nanos(static_cast<int>(quota.retry_after.count() % 1000) * 1'000'000);
+  retry.mutable_retry_delay()->set_seconds(after.count() / 1000);
+  retry.mutable_retry_delay()->set_nanos(static_cast<int>(after.count() % 1000) * 1'000'000);
   status.add_details()->PackFrom(retry);
 }
 
@@ -117,6 +120,7 @@ google::rpc::Status ToRpcStatus(const absl::Status& status) {
       (*info.mutable_metadata())["allowed"] = NumberText(quota->use->allowed);
     }
   }
+  if (const auto after = RetryAfterOf(status)) AddRetry(*after, result);
   if (const std::string payload = Payload(status, kBadRequest); !payload.empty()) {
     const int kept = AddViolations(payload, result);
     const std::string total = Payload(status, kViolations);

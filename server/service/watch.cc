@@ -28,8 +28,7 @@ Watch::Decision Watch::Decide(Time now) {
   if (broken_) return DecideFinish(grpc::Status(grpc::StatusCode::CANCELLED, "the watcher has gone"));
   if (hub_.draining()) {
     if (!said_draining_) return DecideStatement(true, now);
-    return DecideFinish(ToGrpcStatus(
-        MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down; watch again later")));
+    return DecideFinish(ToGrpcStatus(MakeDrainingError()));
   }
   if (const absl::Status may_go_on = CheckWatcher(); !may_go_on.ok()) return DecideFinish(ToGrpcStatus(may_go_on));
   return DecideNext(now);

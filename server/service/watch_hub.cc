@@ -28,7 +28,7 @@ WatchHub::~WatchHub() {
 absl::Status WatchHub::Add(const std::string& subject, const std::shared_ptr<Watch>& watch,
                            std::optional<std::uint32_t> most_of_watcher) {
   const std::lock_guard lock(mutex_);
-  if (draining_) return MakeError(absl::StatusCode::kUnavailable, "DRAINING", "the server is going down");
+  if (draining_) return MakeDrainingError();
   if (count_ >= options_.max_watches) {
     return MakeQuotaError(
         "TOO_MANY_WATCHES", "max_watches",

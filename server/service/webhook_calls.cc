@@ -61,12 +61,11 @@ v1::GetWebhookSecretResponse GetWebhookSecret(const Backend& backend, const Call
 std::string WebhookBody(const JobRecord& job, const std::string& build) {
   const JobSpec& spec = *job.spec;
   const JobState& state = *job.state;
+  const v1::Job proto = JobToProto(spec, state, JobView::kChanging);
   nlohmann::ordered_json data;
   data["job"] = spec.id.Name();
-  data["state"] = v1::Job::State_Name(JobToProto(spec, state, JobView::kChanging).state());
-  if (state.end_reason) {
-    data["endReason"] = v1::EndReason_Name(JobToProto(spec, state, JobView::kChanging).end_reason());
-  }
+  data["state"] = v1::Job::State_Name(proto.state());
+  if (state.end_reason) data["endReason"] = v1::EndReason_Name(proto.end_reason());
   data["scene"] = spec.scene->name;
   data["owner"] = spec.owner;
   data["createTime"] = Rfc3339(spec.create_time);

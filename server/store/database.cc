@@ -116,11 +116,7 @@ absl::StatusOr<bool> Statement::Step() {
 void Statement::Reset() { sqlite3_reset(statement_.get()); }
 
 absl::Status Statement::Run() {
-  while (true) {
-    const auto row = Step();
-    if (!row.ok()) return row.status();
-    if (!*row) return absl::OkStatus();
-  }
+  return ForEachRow([](const Statement&) {});
 }
 
 std::int64_t Statement::Integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }

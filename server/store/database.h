@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -34,7 +35,17 @@ class Statement {
   absl::StatusOr<bool> Step();
   // To before the first row, with the parameters as they are.
   void Reset();
-  // To the end, for statements that give no rows.
+  // To the end, visit(*this) for each row.
+  template <class Visit>
+  absl::Status ForEachRow(Visit visit) {
+    while (true) {
+      const absl::StatusOr<bool> row = Step();
+      if (!row.ok()) return row.status();
+      if (!*row) return absl::OkStatus();
+      visit(std::as_const(*this));
+    }
+  }
+  // The same for statements that give no rows.
   absl::Status Run();
 
   // Of the row, columns from 0.

@@ -33,13 +33,9 @@ absl::Status DurableSceneStore::Restore() {
 absl::Status DurableSceneStore::RestoreScenes() {
   std::vector<std::pair<std::string, std::string>> scenes;  // Hash and title.
   absl::Status listed = storage_.Read([&](Database& database) -> absl::Status {
-    Statement rows = database.Prepare("SELECT sha256, title FROM scenes ORDER BY number");
-    while (true) {
-      const auto row = rows.Step();
-      if (!row.ok()) return row.status();
-      if (!*row) return absl::OkStatus();
-      scenes.emplace_back(rows.Bytes(0), rows.Bytes(1));
-    }
+    return database.Prepare("SELECT sha256, title FROM scenes ORDER BY number").ForEachRow([&](const Statement& row) {
+      scenes.emplace_back(row.Bytes(0), row.Bytes(1));
+    });
   });
   if (!listed.ok()) return listed;
   for (auto& [sha256, title] : scenes) {

@@ -14,6 +14,9 @@ namespace flatlight {
 
 absl::Status MakeError(absl::StatusCode code, const std::string& reason, const std::string& message);
 
+// UNAVAILABLE, DRAINING: of a server that ends. Another one may be there soon, so it says when to try again.
+absl::Status MakeDrainingError();
+
 // Of one's own: how much is used, and how much is allowed, in the limit's unit.
 struct QuotaUse {
   double used = 0;
@@ -32,6 +35,8 @@ struct QuotaViolation {
 
 // Empty if the error was not made by the functions above.
 std::string ReasonOf(const absl::Status& error);
+// When to try again, of an error that says so; those of exhausted limits do.
+std::optional<std::chrono::milliseconds> RetryAfterOf(const absl::Status& error);
 std::optional<QuotaViolation> QuotaViolationOf(const absl::Status& error);
 
 }  // namespace flatlight

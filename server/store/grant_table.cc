@@ -15,13 +15,12 @@ absl::StatusOr<std::vector<Grant>> ReadGrants(Database& database, const std::str
   Statement rows = database.Prepare("SELECT grantee, access FROM grants WHERE resource = ? ORDER BY grantee");
   rows.Bind(std::string_view(resource));
   std::vector<Grant> grants;
-  while (true) {
-    const auto row = rows.Step();
-    if (!row.ok()) return row.status();
-    if (!*row) return grants;
-    const auto grantee = Grantee::Parse(rows.Bytes(0));
-    if (grantee) grants.push_back({*grantee, rows.Bytes(1) == kControl ? Access::kControl : Access::kRead});
-  }
+  absl::Status read = rows.ForEachRow([&](const Statement& row) {
+    const auto grantee = Grantee::Parse(row.Bytes(0));
+    if (grantee) grants.push_back({*grantee, row.Bytes(1) == kControl ? Access::kControl : Access::kRead});
+  });
+  if (!read.ok()) return read;
+  return grants;
 }
 
 absl::Status InsertGrant(Database& database, const std::string& resource, const Grant& grant) {

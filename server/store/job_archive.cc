@@ -56,9 +56,19 @@ std::int64_t FirstNumber(std::optional<std::uint64_t> before) {
   return before ? static_cast<std::int64_t>(*before) : INT64_MAX;
 }
 
-// Of a query of kColumns that gives up to one job more than `limit`.
-absl::StatusOr<JobArchive::Page> ReadPage(Storage& storage, std::size_t limit,
-                                          const std::function<Statement(Database&)>& query) {
+using Query = std::function<Statement(Database&)>;  // Of kColumns.
+
+absl::StatusOr<std::vector<ArchivedJob>> JobsOf(Storage& storage, const Query& query) {
+  std::vector<ArchivedJob> jobs;
+  absl::Status read = storage.Read([&](Database& database) {
+    return query(database).ForEachRow([&](const Statement& row) { jobs.push_back(JobOf(row)); });
+  });
+  if (!read.ok()) return read;
+  return jobs;
+}
+
+// Of a query that gives up to one job more than `limit`.
+absl::StatusOr<JobArchive::Page> ReadPage(Storage& storage, std::size_t limit, const Query& query) {
   JobArchive::Page page;
   const absl::Status read = storage.Read([&](Database& database) -> absl::Status {
     Statement jobs = query(database);
@@ -239,12 +249,9 @@ absl::StatusOr<std::vector<JobId>> JobArchive::EndedBefore(JobClass job_class, W
         "SELECT uuid FROM jobs WHERE job_class = ? AND end_time < ? ORDER BY end_time, number LIMIT ? OFFSET ?");
     jobs.Bind(static_cast<std::int64_t>(job_class)).Bind(SecondsOf(before));
     jobs.Bind(static_cast<std::int64_t>(limit)).Bind(static_cast<std::int64_t>(skip));
-    while (true) {
-      const auto row = jobs.Step();
-      if (!row.ok()) return row.status();
-      if (!*row) return absl::OkStatus();
-      if (const auto id = JobId::FromName("jobs/" + jobs.Bytes(0))) ids.push_back(*id);
-    }
+    return jobs.ForEachRow([&](const Statement& row) {
+      if (const auto id = JobId::FromName("jobs/" + row.Bytes(0))) ids.push_back(*id);
+    });
   });
   if (!read.ok()) return read;
   return ids;
@@ -263,20 +270,12 @@ absl::StatusOr<std::optional<JobId>> JobArchive::FindDone(const std::string& wor
 }
 
 absl::StatusOr<std::vector<ArchivedJob>> JobArchive::WithoutClass(std::size_t limit) {
-  std::vector<ArchivedJob> found;
-  absl::Status read = storage_.Read([&](Database& database) -> absl::Status {
+  return JobsOf(storage_, [&](Database& database) {
     Statement jobs =
         database.Prepare(std::string(kColumns) + "WHERE job_class IS NULL AND end_time IS NOT NULL LIMIT ?");
     jobs.Bind(static_cast<std::int64_t>(limit));
-    while (true) {
-      const auto row = jobs.Step();
-      if (!row.ok()) return row.status();
-      if (!*row) return absl::OkStatus();
-      found.push_back(JobOf(jobs));
-    }
+    return jobs;
   });
-  if (!read.ok()) return read;
-  return found;
 }
 
 absl::Status JobArchive::Classify(const std::vector<std::pair<JobId, JobClass>>& classes) {
@@ -391,18 +390,9 @@ absl::StatusOr<std::vector<Grant>> JobArchive::GrantsOf(const JobId& id) {
 }
 
 absl::StatusOr<std::vector<ArchivedJob>> JobArchive::Unfinished() {
-  std::vector<ArchivedJob> unfinished;
-  const absl::Status read = storage_.Read([&](Database& database) -> absl::Status {
-    Statement jobs = database.Prepare(std::string(kColumns) + "WHERE end_time IS NULL ORDER BY number");
-    while (true) {
-      const auto row = jobs.Step();
-      if (!row.ok()) return row.status();
-      if (!*row) return absl::OkStatus();
-      unfinished.push_back(JobOf(jobs));
-    }
+  return JobsOf(storage_, [](Database& database) {
+    return database.Prepare(std::string(kColumns) + "WHERE end_time IS NULL ORDER BY number");
   });
-  if (!read.ok()) return read;
-  return unfinished;
 }
 
 absl::StatusOr<Submission> JobArchive::FetchSubmission(const JobId& id) {

@@ -16,13 +16,10 @@ struct Unmeasured {
 absl::Status MeasureOld(Storage& storage) {
   std::vector<Unmeasured> jobs;
   absl::Status listed = storage.Read([&](Database& database) -> absl::Status {
-    Statement rows = database.Prepare("SELECT number, request, result FROM jobs WHERE stored_bytes IS NULL");
-    while (true) {
-      const auto row = rows.Step();
-      if (!row.ok()) return row.status();
-      if (!*row) return absl::OkStatus();
-      jobs.push_back({rows.Integer(0), rows.Bytes(1), rows.OptionalBytes(2)});
-    }
+    return database.Prepare("SELECT number, request, result FROM jobs WHERE stored_bytes IS NULL")
+        .ForEachRow([&](const Statement& row) {
+          jobs.push_back({row.Integer(0), row.Bytes(1), row.OptionalBytes(2)});
+        });
   });
   if (!listed.ok() || jobs.empty()) return listed;
   std::vector<std::uint64_t> sizes;
@@ -50,13 +47,8 @@ StoredBytes MeasureStoredBytes(Storage& storage) {
   StoredBytes stored;
   storage
       .Read([&](Database& database) -> absl::Status {
-        Statement rows = database.Prepare("SELECT owner, total(stored_bytes) FROM jobs GROUP BY owner");
-        while (true) {
-          const auto row = rows.Step();
-          if (!row.ok()) return row.status();
-          if (!*row) return absl::OkStatus();
-          stored[rows.Bytes(0)] = static_cast<std::int64_t>(rows.Real(1));
-        }
+        return database.Prepare("SELECT owner, total(stored_bytes) FROM jobs GROUP BY owner")
+            .ForEachRow([&](const Statement& row) { stored[row.Bytes(0)] = static_cast<std::int64_t>(row.Real(1)); });
       })
       .IgnoreError();
   return stored;

@@ -103,12 +103,9 @@ absl::StatusOr<std::vector<std::string>> UserStore::GroupsOf(const std::string& 
   Statement rows = database_.Prepare("SELECT group_name FROM memberships WHERE user = ? ORDER BY group_name");
   rows.Bind(std::string_view(name));
   std::vector<std::string> groups;
-  while (true) {
-    const auto row = rows.Step();
-    if (!row.ok()) return row.status();
-    if (!*row) return groups;
-    groups.push_back(rows.Bytes(0));
-  }
+  absl::Status read = rows.ForEachRow([&](const Statement& row) { groups.push_back(row.Bytes(0)); });
+  if (!read.ok()) return read;
+  return groups;
 }
 
 absl::StatusOr<std::vector<User>> UserStore::List() {

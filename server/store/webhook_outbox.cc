@@ -75,15 +75,14 @@ absl::StatusOr<std::vector<DueWebhook>> WebhookOutbox::Due(WallTime now, std::si
       "due, number) AS turn FROM webhooks WHERE due <= ?) WHERE turn <= ? ORDER BY due, number LIMIT ?");
   rows.Bind(Milliseconds(now)).Bind(static_cast<std::int64_t>(per_owner)).Bind(static_cast<std::int64_t>(most));
   std::vector<DueWebhook> due;
-  while (true) {
-    const auto row = rows.Step();
-    if (!row.ok()) return row.status();
-    if (!*row) return due;
-    const auto job = JobId::FromName("jobs/" + rows.Bytes(1));
-    if (!job) continue;
+  absl::Status read = rows.ForEachRow([&](const Statement& row) {
+    const auto job = JobId::FromName("jobs/" + row.Bytes(1));
+    if (!job) return;
     due.push_back(
-        {rows.Integer(0), *job, rows.Bytes(2), rows.Bytes(3), rows.Bytes(4), static_cast<unsigned>(rows.Integer(5))});
-  }
+        {row.Integer(0), *job, row.Bytes(2), row.Bytes(3), row.Bytes(4), static_cast<unsigned>(row.Integer(5))});
+  });
+  if (!read.ok()) return read;
+  return due;
 }
 
 absl::StatusOr<std::optional<WallTime>> WebhookOutbox::NextDue() {

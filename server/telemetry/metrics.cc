@@ -78,6 +78,8 @@ class Looks final : public prometheus::Collectable {
                                 process.cpu_seconds));
     families.push_back(OneValue("process_resident_memory_bytes", "Resident memory of the server.", MetricType::Gauge,
                                 process.resident_bytes));
+    families.push_back(OneValue("flatlight_heap_bytes", "Memory that is allocated and in use.", MetricType::Gauge,
+                                process.heap_bytes));
     families.push_back(
         OneValue("process_open_fds", "Files and connections that are open.", MetricType::Gauge, process.open_files));
     const std::lock_guard lock(mutex_);

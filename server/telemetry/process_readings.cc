@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/telemetry/process_readings.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <ctime>
@@ -21,6 +22,10 @@ ProcessReadings ReadProcess() {
   if (std::ifstream statm("/proc/self/statm"); statm >> pages >> resident) {
     readings.resident_bytes = resident * static_cast<double>(sysconf(_SC_PAGESIZE));
   }
+#ifdef __GLIBC__
+  const struct mallinfo2 heap = mallinfo2();
+  readings.heap_bytes = static_cast<double>(heap.uordblks + heap.hblkhd);
+#endif
   std::error_code error;
   const std::filesystem::directory_iterator files("/proc/self/fd", error);
   if (!error) readings.open_files = static_cast<double>(std::distance(begin(files), end(files)));

@@ -8,6 +8,7 @@ namespace flatlight {
 struct ProcessReadings {
   double cpu_seconds = 0;     // Of all threads, since it started.
   double resident_bytes = 0;  // 0 where the system does not tell, as below.
+  double heap_bytes = 0;      // That were allocated and not freed: without what the C library keeps for later.
   double open_files = 0;
 };
 

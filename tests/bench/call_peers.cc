@@ -8,9 +8,12 @@
 
 #include "grpcpp/server.h"
 #include "grpcpp/server_builder.h"
+#include "tests/bench/bench_report.h"
 
 namespace flatlight {
 namespace {
+
+constexpr double kGoal = 70;  // % of the empty call's rate.
 
 class Echo final : public v1::ServerService::CallbackService {
   grpc::ServerUnaryReactor* GetCapabilities(grpc::CallbackServerContext* context, const v1::GetCapabilitiesRequest*,
@@ -71,6 +74,22 @@ std::string CallPeers::EndedJob() {
   for (v1::WatchJobResponse update; reader->Read(&update);) continue;
   if (!reader->Finish().ok()) Die("WatchJob failed");
   return job.name();
+}
+
+std::vector<std::string> CallRow(const std::string& name, const std::vector<double>& rates,
+                                 const std::vector<double>& empty_rates, const std::vector<std::string>& more) {
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < rates.size(); ++i) shares.push_back(100 * rates[i] / empty_rates[i]);
+  const Quartiles rate = QuartilesOf(rates);
+  const double share = QuartilesOf(shares).median;
+  std::vector<std::string> row = {name, std::to_string(rates.size()), Short(rate.lower), Short(rate.median),
+                                  Short(rate.upper)};
+  row.insert(row.end(), more.begin(), more.end());
+  row.push_back(Short(share));
+  const bool is_empty_call = &rates == &empty_rates;
+  row.push_back(is_empty_call ? "" : Short(kGoal));
+  row.push_back(is_empty_call ? "" : share >= kGoal ? "met" : "MISSED");
+  return row;
 }
 
 }  // namespace flatlight

@@ -6,6 +6,7 @@
 #include <sys/types.h>
 
 #include <string>
+#include <vector>
 
 #include "tests/bench/bench_daemon.h"
 
@@ -37,6 +38,12 @@ class CallPeers {
   BenchDaemon echo_;
   BenchDaemon daemon_;
 };
+
+// A row of the table of a bench of calls: the name, the number of turns, the quartiles of `rates` (calls a second, by
+// turn), `more`, the median of rate over that of the empty call in the same turn (%), the goal, and whether it is met.
+// For the empty call itself, whose rates are `empty_rates`: without a goal.
+std::vector<std::string> CallRow(const std::string& name, const std::vector<double>& rates,
+                                 const std::vector<double>& empty_rates, const std::vector<std::string>& more = {});
 
 }  // namespace flatlight
 

@@ -58,7 +58,14 @@ absl::StatusOr<std::unique_ptr<Session>> Session::Open(const CommandLine& line, 
     *server = ServerChoice{*std::move(address), Tls()};
     token = session->server_->token();
   }
-  auto connection = Connection::Open((*server)->address, (*server)->tls, *token, interruption);
+  // A private server has nobody else to serve.
+  Connection::Tell tell;
+  if (!session->is_private()) {
+    tell = [quiet = line.quiet](const std::string& why) {
+      if (!quiet) std::fputs(("flatlight: " + why + "\n").c_str(), stderr);
+    };
+  }
+  auto connection = Connection::Open((*server)->address, (*server)->tls, *token, interruption, std::move(tell));
   if (!connection.ok()) return session->Explain(connection.status());
   session->connection_ = *std::move(connection);
   return session;

@@ -6,11 +6,13 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <random>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/cli/connection/interruption.h"
+#include "client/cli/connection/retry.h"
 #include "client/cli/connection/server_address.h"
 #include "client/cli/tls/tls.h"
 #include "flatlight/v1/render_service.grpc.pb.h"
@@ -26,9 +28,12 @@ class Connection {
   static constexpr std::chrono::seconds kPatience{5};
 
   // Reads the server's capabilities, so an open connection is one that works. An empty token is not sent.
-  // UNAVAILABLE after kPatience, with the reason.
+  // UNAVAILABLE after kPatience, with the reason. Where the server is too busy, or does not answer, unary calls are
+  // made again if that is safe (see Retry), and `tell` gets one line for each such call; empty: they are made once.
+  using Tell = std::function<void(const std::string&)>;
   static absl::StatusOr<std::unique_ptr<Connection>> Open(const ServerAddress& address, const Tls& tls,
-                                                          const std::string& token, Interruption& interruption);
+                                                          const std::string& token, Interruption& interruption,
+                                                          Tell tell = nullptr);
 
   v1::RenderService::Stub& render() { return *render_; }
   v1::SceneService::Stub& scenes() { return *scenes_; }
@@ -48,7 +53,8 @@ class Connection {
   template <class Stub, class Request, class Response>
   absl::Status Call(Stub& stub, grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
                     const Request& request, Response& response, OnSignal on_signal = OnSignal::kCancel) {
-    return Call([&](grpc::ClientContext* context) { return (stub.*method)(context, request, &response); }, on_signal);
+    return Call([&](grpc::ClientContext* context) { return (stub.*method)(context, request, &response); }, on_signal,
+                IsRepeatable(request));
   }
 
   // The same, for who wants the response or the error.
@@ -66,14 +72,16 @@ class Connection {
   absl::Status Explain(const grpc::Status& status) const;
 
  private:
-  Connection(ServerAddress address, Tls tls, std::string token, Interruption& interruption);
-  absl::Status Call(const std::function<grpc::Status(grpc::ClientContext*)>& call, OnSignal on_signal);
+  Connection(ServerAddress address, Tls tls, std::string token, Interruption& interruption, Tell tell);
+  absl::Status Call(const std::function<grpc::Status(grpc::ClientContext*)>& call, OnSignal on_signal, bool repeatable);
   absl::Status ReadCapabilities();
 
   ServerAddress address_;
   Tls tls_;
   std::string token_;
   Interruption& interruption_;
+  Tell tell_;
+  std::minstd_rand random_{std::random_device()()};
   std::unique_ptr<v1::RenderService::Stub> render_;
   std::unique_ptr<v1::SceneService::Stub> scenes_;
   std::unique_ptr<v1::ServerService::Stub> server_;

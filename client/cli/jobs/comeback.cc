@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "client/cli/jobs/comeback.h"
 
-#include <algorithm>
-
+#include "client/cli/connection/retry.h"
 #include "client/cli/status/exit_code.h"
 #include "client/cli/text/numbers.h"
 
 namespace flatlight {
 
+using std::chrono::milliseconds;
 using std::chrono::steady_clock;
+
+namespace {
+
+constexpr milliseconds kFirstWait{50};
+constexpr milliseconds kMostWait{2000};
+
+}  // namespace
 
 bool MayComeBack(const grpc::Status& status) {
   switch (status.error_code()) {
@@ -25,11 +32,6 @@ bool MayComeBack(const grpc::Status& status) {
   }
 }
 
-std::chrono::milliseconds Backoff(int failures, double chance) {
-  const double whole = std::min(2000.0, 50.0 * static_cast<double>(1 << std::clamp(failures - 1, 0, 10)));
-  return std::chrono::milliseconds(static_cast<long>(whole * (0.5 + 0.5 * chance)));
-}
-
 void Comeback::Heard() {
   failures_ = 0;
   last_message_ = steady_clock::now();
@@ -41,7 +43,8 @@ absl::Status Comeback::Wait(const grpc::Status& status) {
                                   FormatSeconds(std::chrono::duration<double>(patience_).count()) + ": " +
                                   status.error_message());
   const double chance = std::uniform_real_distribution<double>(0, 1)(random_);
-  if (!connection_.interruption().Sleep(Backoff(++failures_, chance))) return InterruptedError("interrupted");
+  if (!connection_.interruption().Sleep(DoublingWait(kFirstWait, kMostWait, ++failures_, chance)))
+    return InterruptedError("interrupted");
   return absl::OkStatus();
 }
 

@@ -13,10 +13,6 @@ namespace flatlight {
 // Whether the same call may well succeed a little later.
 bool MayComeBack(const grpc::Status& status);
 
-// The wait before try number `failures` (from 1): doubles from 50 ms to 2 s, of which a part in [1/2, 1] given by
-// `chance` in [0, 1), so that many watchers of a server that comes back do not call in step.
-std::chrono::milliseconds Backoff(int failures, double chance);
-
 // Waits between the tries to take a broken stream up again.
 class Comeback {
  public:

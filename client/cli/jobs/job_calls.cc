@@ -10,7 +10,6 @@
 namespace flatlight {
 namespace {
 
-constexpr int kCreateTries = 3;
 constexpr std::chrono::seconds kSilence{30};
 
 // Also after a signal.
@@ -33,17 +32,8 @@ absl::StatusOr<v1::Job> CreateJob(Connection& connection, const v1::SceneSource&
   request.set_anew(options.anew);
   request.set_webhook(options.webhook);
   request.set_request_id(NewUuid());
-  v1::Job job;
-  absl::Status status;
-  for (int tries = 0; tries < kCreateTries; ++tries) {
-    // It returns at once, and a job of which nobody knows could not be cancelled: so a signal has to wait.
-    status = connection.Call(connection.render(), &v1::RenderService::Stub::CreateJob, request, job,
-                             Connection::OnSignal::kGoOn);
-    if (status.ok()) return job;
-    if (status.code() != absl::StatusCode::kUnavailable) break;
-    if (!connection.interruption().Sleep(std::chrono::milliseconds(200))) return InterruptedError("interrupted");
-  }
-  return status;
+  // It returns at once, and a job of which nobody knows could not be cancelled: so a signal has to wait.
+  return connection.Ask(connection.render(), &v1::RenderService::Stub::CreateJob, request, Connection::OnSignal::kGoOn);
 }
 
 absl::StatusOr<v1::Job> GetJob(Connection& connection, const std::string& name) {

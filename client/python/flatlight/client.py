@@ -2,12 +2,14 @@
 """The door to a server: Client("HOST:PORT").submit("gallery:penumbra", target_error=0.01).result()"""
 import os
 import re
+import time
 import uuid
 
 import grpc
 from flatlight import scenes
 from flatlight.errors import BadRequest, error_of
 from flatlight.job import Job
+from flatlight.retry import Retry
 from flatlight.settings import enum_value, settings as make_settings
 from flatlight.tls import Tls
 from flatlight.v1 import (render_service_pb2, render_service_pb2_grpc, scene_service_pb2, scene_service_pb2_grpc,
@@ -62,27 +64,35 @@ class Client:
         self.scene_service = scene_service_pb2_grpc.SceneServiceStub(self._channel)
         self.server_service = server_service_pb2_grpc.ServerServiceStub(self._channel)
 
-    def call(self, method, request):
-        """The answer of a call that is no stream, or an Error."""
-        try:
-            return method(request, timeout=_DEADLINE, metadata=self.metadata)
-        except grpc.RpcError as error:
-            raise error_of(error, self.address) from None
+    def call(self, method, request, *, final=()):
+        """The answer of a call that is no stream, or an Error. Where the server is too busy, or does not answer, the call is
+        made up to four times more, if that is safe, with a warning in the log "flatlight". `final`: reasons of refusals
+        after which it is not."""
+        tries = Retry(request)
+        while True:
+            try:
+                return method(request, timeout=_DEADLINE, metadata=self.metadata)
+            except grpc.RpcError as rpc_error:
+                error = error_of(rpc_error, self.address)
+            wait = tries.next(error) if error.reason not in final else None
+            if wait is None:
+                raise error
+            time.sleep(wait)
 
     def submit(self, scene, *, probes=(), job_class=None, request_id=None, anew=False, webhook="", settings=None,
-               **keywords):
+               final=(), **keywords):
         """Submits a job and returns it at once. `scene`: gallery:NAME, a file's path, a dictionary in the file's form.
         Settings are keywords (method="path-tracing", target_error=0.01) or a flatlight.v1.Settings. `job_class`:
         interactive, graded or regrade. The same `request_id` (a UUID) finds the job of the first call.
         `anew`: the job does its own work, also if an equal one of the server has done it. `webhook`: a URL that the server
-        sends a POST when the job has ended, signed with webhook_secret()."""
+        sends a POST when the job has ended, signed with webhook_secret(). `final`: as in call()."""
         request = render_service_pb2.CreateJobRequest(scene=scenes.provide(self, scene, probes),
                                                       settings=_settings(settings, keywords),
                                                       request_id=request_id or str(uuid.uuid4()), anew=anew,
                                                       webhook=webhook)
         if job_class is not None:
             request.job_class = enum_value(request.DESCRIPTOR.fields_by_name["job_class"].enum_type, job_class, "job_class")
-        return Job(self, self.call(self.render_service.CreateJob, request))
+        return Job(self, self.call(self.render_service.CreateJob, request, final=final))
 
     def render(self, scene, *, progress=True, **keywords):
         """Submits, waits with a display of progress, and returns the Result."""

@@ -56,11 +56,11 @@ class Sweep:
 
     def _submit(self, run):
         while True:
+            unfinished = [job for job in self.jobs.values() if not job.ended]
             try:
                 job = self._client.submit(run.scene, job_class=run.job_class, request_id=self._state.pending[run.key],
-                                          **run.values)
+                                          final=_BUSY if unfinished else (), **run.values)
             except Denied as error:
-                unfinished = [job for job in self.jobs.values() if not job.ended]
                 if error.reason not in _BUSY or not unfinished:
                     raise
                 self._wait_for(unfinished[0], self.runs.index(run))

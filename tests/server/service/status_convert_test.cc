@@ -34,6 +34,13 @@ TEST(StatusConvert, QuotasSayWhichAndWhenToTryAgain) {
   EXPECT_EQ(retry->retry_delay().nanos(), 500'000'000);
 }
 
+TEST(StatusConvert, AServerThatEndsSaysWhenToTryAgain) {
+  const grpc::Status status = ToGrpcStatus(MakeDrainingError());
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(DetailOf<google::rpc::RetryInfo>(status)->retry_delay().seconds(), 2);
+  EXPECT_FALSE(DetailOf<google::rpc::QuotaFailure>(status));
+}
+
 // What a gRPC client counts against its 8 KiB: message, percent-encoded, and details in base64.
 std::size_t TrailerBytes(const grpc::Status& status) {
   return 3 * status.error_message().size() + (status.error_details().size() + 2) / 3 * 4;

@@ -130,6 +130,18 @@ TEST(JobArchiveWebhooks, AnEndAndItsWebhookAreOneChange) {
   ASSERT_THAT(archive.End(JobId::Random(), {.message = "ended", .time = kNow, .event = "event"}),
               testing::StatusIs(absl::StatusCode::kNotFound, ::testing::_));
   EXPECT_THAT(*outbox.Due(kNow, 9, 9), IsEmpty());
+  // Whichever of the two cannot be written, the other is not written either.
+  const auto other = *Database::OpenExisting(Storage::DatabasePath(folder.path()));
+  for (const std::string table : {"webhooks", "jobs"}) {
+    ASSERT_THAT(
+        other->Execute("CREATE TRIGGER refuse BEFORE UPDATE ON " + table + " BEGIN SELECT raise(ABORT, 'full'); END"),
+        IsOk());
+    EXPECT_FALSE(archive.End(job, {.message = "ended", .time = kNow, .event = "event"}).ok()) << table;
+    EXPECT_EQ(archive.Unfinished()->size(), 1u) << table;
+    EXPECT_THAT(*outbox.Due(kNow, 9, 9), IsEmpty()) << table;
+    EXPECT_EQ(told, 0);
+    ASSERT_THAT(other->Execute("DROP TRIGGER refuse"), IsOk());
+  }
   ASSERT_THAT(archive.End(job, {.message = "ended", .time = kNow, .event = "event"}), IsOk());
   EXPECT_EQ(told, 1);
   ASSERT_EQ(outbox.Due(kNow, 9, 9)->size(), 1u);

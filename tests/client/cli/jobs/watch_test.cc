@@ -219,13 +219,6 @@ TEST_F(WatchTest, AResultThatIsCutShortIsNoResult) {
   EXPECT_EQ(FetchResult(*connection_, "jobs/x").status().code(), absl::StatusCode::kInternal);
 }
 
-TEST(Backoff, DoublesWithinBounds) {
-  EXPECT_EQ(Backoff(1, 0).count(), 25);
-  EXPECT_EQ(Backoff(1, 0.99).count(), 49);
-  EXPECT_EQ(Backoff(3, 0).count(), 100);
-  EXPECT_EQ(Backoff(1000000, 0.5).count(), 1500);
-}
-
 TEST(JobName, NamesUuidsAndBeginnings) {
   const std::string a = "jobs/12345678-1234-4234-8234-123456789abc", b = "jobs/12aaaaaa-1234-4234-8234-123456789abc";
   EXPECT_EQ(*MatchJobName(a, {}), a);
