@@ -54,7 +54,7 @@ SceneMaker ReflectingFloor(bool walls, bool blocker) {
 TEST(IrradianceCachingRenderingTest, EventsAndSecondOrderAreFarAheadAlsoWithSeveralBounces) {
   for (const auto& [walls, blocker] : {std::pair(false, false), {false, true}, {true, false}, {true, true}}) {
     const auto scene = ReflectingFloor(walls, blocker).Build();
-    for (const std::uint32_t records : {10u, 16u}) {
+    for (const std::uint32_t records : {8u, 10u, 16u}) {
       Settings settings = Caching();
       settings.max_records = records;
       const double events = FromReference(scene, settings).rms;
