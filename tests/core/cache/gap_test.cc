@@ -17,8 +17,7 @@ namespace {
 
 std::vector<double> Points(std::size_t count) {
   std::vector<double> points;
-  for (std::size_t i = 0; i < count; ++i)
-    points.push_back((static_cast<double>(i) + 0.5) / static_cast<double>(count));
+  for (std::size_t i = 0; i < count; ++i) points.push_back((static_cast<double>(i) + 0.5) / static_cast<double>(count));
   return points;
 }
 
