@@ -28,6 +28,12 @@ double Root(double value, std::size_t power) {
   return power == 1 ? value : power == 2 ? std::sqrt(value) : std::sqrt(std::sqrt(value));
 }
 
+// Of `count` records toward a corner, by number from it: distances from it shrink by the square, and none is in it.
+double Graded(double number, double count) {
+  const double root = (number + 0.5) / (count + 0.5);
+  return root * root;
+}
+
 // The place in [0, 1] below which there is a share of a density that goes from `first` to `last`.
 double Quantile(double share, double first, double last) {
   const double slope = last - first, mean = 0.5 * (first + last);
@@ -53,7 +59,12 @@ double Gap::JoinedErrorWith(std::size_t count, std::size_t power) const {
   // If derivatives grow as those of 1/x do, what an error of extrapolation over a distance is to irradiance its square
   // is to what joined records leave between them over twice that distance.
   const double most = std::min(error, kMostError);
-  if (before || after) return most * most / Power(2 * n, 2 * power);
+  if (before || after) {
+    const double joined = most * most / Power(2 * n, 2 * power);
+    // The last one before a corner is not joined, and what is left of x log x falls with its distance alone.
+    const bool corner = before ? corners.high : corners.low;
+    return corner ? std::max(joined, most * Graded(0, n)) : joined;
+  }
   return count == 1 ? most / Power(2, power) : most * most / Power(4 * (n - 1), 2 * power);
 }
 
@@ -61,10 +72,8 @@ double Gap::ShareOf(std::size_t number, std::size_t count) const {
   const double n = static_cast<double>(count), k = static_cast<double>(number);
   if (!joins) return (2 * k + 1 + (before ? 1 : 0)) / (2 * n + static_cast<double>(Halves()));
   if (before && after) return (k + 1) / (n + 1);
-  // Toward a corner distances shrink by the square, and none is right in it.
-  const auto graded = [&](double nth) { return ((nth + 0.5) / (n + 0.5)) * ((nth + 0.5) / (n + 0.5)); };
-  if (before) return corners.high ? 1 - graded(n - 1 - k) : (k + 1) / n;
-  if (after) return corners.low ? graded(k) : k / n;
+  if (before) return corners.high ? 1 - Graded(n - 1 - k, n) : (k + 1) / n;
+  if (after) return corners.low ? Graded(k, n) : k / n;
   return count == 1 ? 0.5 : (k + kLeftOfUnknown) / (n - 1 + 2 * kLeftOfUnknown);
 }
 

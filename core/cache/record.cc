@@ -5,18 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/cache/series_rest.h"
 #include "core/math/check.h"
 
 namespace flatlight {
-namespace {
-
-// At which x log x has the right rest at its end, x = 0.
-constexpr double kMostRatio = 0.75;
-
-// So many times the estimate an error at an event is no surprise.
-constexpr double kAsExpected = 1.25;
-
-}  // namespace
 
 double CacheRecord::EventToLeft() const {
   const std::span<const VisibilityEvent> left = EventsIn(events, -std::numeric_limits<double>::infinity(), at);
@@ -41,7 +33,7 @@ double CacheRecord::SmoothError(double distance) const {
   for (std::size_t k = 0; k < degree + 2; ++k) last *= distance;
   const double factor = static_cast<double>(degree + 2) / static_cast<double>(std::max<std::size_t>(degree, 1));
   const double apart = factor * growth[degree + 2] * distance;
-  const double ratio = apart < kMostRatio * before ? apart / before : kMostRatio;
+  const double ratio = SeriesRatio(before, apart);
   return error + last * ratio / (1 - ratio);
 }
 
@@ -52,9 +44,7 @@ double CacheRecord::ErrorOfStretch(double place) const {
   double error = smooth;
   const auto hold = [&](const VisibilityEvent& event) {
     const double range = std::abs(event.at - at);
-    // Of those in one place the last one tells what is right of it.
-    const bool last = &event == &events.back() || (&event + 1)->at > event.at;
-    if (!event.before || !last || range == 0 || range > most) return;
+    if (!event.before || !IsLastInPlace(events, event) || range == 0 || range > most) return;
     const Spectrum truth = place > at && !Passes(event) ? *event.before : *event.before + event.jump[0];
     const double off = (Extrapolate(*this, event.at, degree) - truth).MaxSize();
     if (off <= kAsExpected * SmoothError(range) * scale) return;

@@ -5,16 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/cache/series_rest.h"
 #include "core/math/check.h"
 
 namespace flatlight {
 namespace {
-
-// Of a term to the one before, in what is estimated of the rest of a series.
-constexpr double kMostRatio = 0.75;
-
-// So many times the estimate an error at an event is no surprise.
-constexpr double kAsExpected = 1.25;
 
 // Weights of value and derivatives, each times its power of the width and over its factorial, of the end at which the
 // fraction t is 0.
@@ -62,11 +57,9 @@ RecordPair::RecordPair(const CacheRecord& left, const CacheRecord& right, std::s
     Smooth();
   }
   if (changes_ == 0) return;
-  for (std::size_t i = 0; i < jumps_.size(); ++i) {
-    const VisibilityEvent& event = *jumps_[i].event;
-    // Of those in one place the last one tells what is right of it.
-    if (i + 1 < jumps_.size() && jumps_[i + 1].event->at == event.at) continue;
-    if (!event.before || event.at >= right.at) continue;
+  for (const Jump& jump : jumps_) {
+    const VisibilityEvent& event = *jump.event;
+    if (!event.before || !IsLastInPlace(left.events, event) || event.at >= right.at) continue;
     const double off = (At(event.at) - *event.before - event.jump[0]).MaxSize();
     // Something that no event tells.
     if (off > kAsExpected * SmoothErrorAt(Fraction(event.at))) doubts_.push_back({event.at, off});
@@ -121,8 +114,7 @@ double RecordPair::SmoothErrorAt(double fraction) const {
   for (std::size_t k = 0; k < degree_; ++k) power *= both;
   const double first = change_[0] * power, second = change_[1] * power * both;
   if (changes_ == 1 || second == 0) return first + second;
-  const double ratio = second < kMostRatio * first ? second / first : kMostRatio;
-  return first + second / (1 - ratio);
+  return first + second / (1 - SeriesRatio(first, second));
 }
 
 double RecordPair::ErrorAt(double place) const {

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cache/series_rest.h"
+
 namespace flatlight {
 namespace {
-
-// Of a term of a series to the one before, in what is estimated of its rest.
-constexpr double kMostRatio = 0.75;
 
 // The terms' sizes at a distance.
 std::array<double, kRecordOrders> TermsOf(const VisibilityEvent& event, double distance) {
@@ -49,7 +48,7 @@ double VisibilityEvent::Rest(double distance) const {
   const std::size_t orders = OrdersOver(distance);
   if (orders < kRecordOrders) return terms[orders] / (1 - kMostRatio);
   const double last = terms[kRecordOrders - 1], one_before = terms[kRecordOrders - 2];
-  const double ratio = last < kMostRatio * one_before ? last / one_before : kMostRatio;
+  const double ratio = SeriesRatio(one_before, last);
   return last * ratio / (1 - ratio);
 }
 
@@ -58,6 +57,10 @@ std::span<const VisibilityEvent> EventsIn(std::span<const VisibilityEvent> event
   const auto first = std::upper_bound(events.begin(), events.end(), low, beyond);
   const auto last = std::upper_bound(first, events.end(), high, beyond);
   return {first, last};
+}
+
+bool IsLastInPlace(std::span<const VisibilityEvent> events, const VisibilityEvent& event) {
+  return &event == &events.back() || (&event + 1)->at > event.at;
 }
 
 }  // namespace flatlight

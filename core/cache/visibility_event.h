@@ -46,6 +46,9 @@ struct VisibilityEvent {
 // Those in (low, high], of events in order: at an event itself its right side counts.
 std::span<const VisibilityEvent> EventsIn(std::span<const VisibilityEvent> events, double low, double high);
 
+// Of several events in one place the last one tells what is right of it. `event`: one of `events`, which are in order.
+bool IsLastInPlace(std::span<const VisibilityEvent> events, const VisibilityEvent& event);
+
 }  // namespace flatlight
 
 #endif  // FLATLIGHT_CORE_CACHE_VISIBILITY_EVENT_H_

@@ -8,7 +8,7 @@
 // errors are over seeds and points, relative to the mean irradiance. "bias" is that of the mean over seeds, less what
 // noise makes of it; "stated" what results say of it. z is (value - truth) / standard error, as far as the difference
 // is larger than the stated bias: honest errors give a mean square of about 1 or less. That of gradients is of the
-// difference over the stated error, which has the bias in it.
+// difference over the stated error, which has the bias in it. Printed too: to what power of photons errors go.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -29,6 +29,7 @@ constexpr std::uint32_t kPoints = 128;
 
 struct Measured {
   double rms = 0;     // Relative to the mean.
+  double doubt = 0;   // Of the logarithm of that: its standard error by the scatter of the seeds.
   double bias = 0;    // Likewise, RMS over points.
   double stated = 0;  // Likewise.
   double z_square = 0;
@@ -47,7 +48,7 @@ Measured Measure(const std::shared_ptr<const Scene>& scene, const Field& referen
   const std::vector<double> truth = All(reference, &ProbeField::irradiance);
   const std::vector<double> slope = All(reference, &ProbeField::gradient);
   const std::size_t n = truth.size();
-  std::vector<double> sum(n), squares(n), stated(n);
+  std::vector<double> sum(n), squares(n), stated(n), of_seed(seeds);
   Measured measured;
   const double begin = ThreadSeconds();
   for (std::uint32_t seed = 0; seed < seeds; ++seed) {
@@ -66,6 +67,7 @@ Measured Measure(const std::shared_ptr<const Scene>& scene, const Field& referen
       const double difference = value[i] - truth[i];
       sum[i] += difference;
       squares[i] += difference * difference;
+      of_seed[seed] += difference * difference;
       stated[i] += bias[i] * bias[i];
       const double beyond = std::max(std::abs(difference) - bias[i], 0.0) / error[i];
       measured.z_square += beyond * beyond / (static_cast<double>(n) * seeds);
@@ -84,6 +86,9 @@ Measured Measure(const std::shared_ptr<const Scene>& scene, const Field& referen
     return std::sqrt(std::max(sum_of_squares, 0.0) / static_cast<double>(n)) / mean;
   };
   measured.rms = relative(all);
+  double scatter = 0;
+  for (const double one : of_seed) scatter += (one - all) * (one - all);
+  measured.doubt = 0.5 * std::sqrt(scatter / (seeds - 1.0) / seeds) / all;
   measured.bias = relative(biases);
   measured.stated = relative(statements);
   return measured;
@@ -101,6 +106,41 @@ void Add(const std::string& scene, const std::string& how, std::uint32_t photons
              Short(m.seconds)});
 }
 
+// Photons to what power errors go with, from the second number of photons on, each 8 times the one before, and that
+// power's standard error.
+void PrintFall(const std::string& scene, const std::vector<Measured>& densities) {
+  const std::size_t count = densities.size() - 1;
+  const double middle = 0.5 * static_cast<double>(count - 1);
+  double slope = 0, squares = 0, variance = 0;
+  for (std::size_t k = 0; k < count; ++k)
+    squares += (static_cast<double>(k) - middle) * (static_cast<double>(k) - middle);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double weight = (static_cast<double>(k) - middle) / squares / std::log(8.0);
+    slope += weight * std::log(densities[k + 1].rms);
+    variance += weight * weight * densities[k + 1].doubt * densities[k + 1].doubt;
+  }
+  std::printf("%s: errors of densities go with photons to the power of %.3f +- %.3f\n", scene.c_str(), slope,
+              std::sqrt(variance));
+}
+
+// The error of direct light, which is what a gather is left with where no photon arrived, and of no light at all.
+void PrintWithoutPhotons(const NamedScene& named, const Field& reference) {
+  Settings settings;
+  settings.method = Method::kExact;
+  settings.max_bounces = 0;
+  settings.derivatives = Derivatives::kNone;
+  const std::vector<double> truth = All(reference, &ProbeField::irradiance);
+  const std::vector<double> direct = All(*Render(named.scene, settings).field, &ProbeField::irradiance);
+  double mean = 0, squares = 0, all = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    mean += truth[i], all += truth[i] * truth[i];
+    squares += (direct[i] - truth[i]) * (direct[i] - truth[i]);
+  }
+  const double n = static_cast<double>(truth.size());
+  std::printf("%s: RMS error of direct light alone %.3g, of no light %.3g: %.2f times as large\n", named.name.c_str(),
+              std::sqrt(squares * n) / mean, std::sqrt(all * n) / mean, std::sqrt(all / squares));
+}
+
 void AddScene(const NamedScene& named, BenchTable& table) {
   Settings settings;
   settings.method = Method::kReference;
@@ -112,6 +152,8 @@ void AddScene(const NamedScene& named, BenchTable& table) {
   settings = {};
   settings.method = Method::kPhotonMapping;
   const bool reflects = named.scene->traits().max_reflectance > 0;
+  if (reflects) PrintWithoutPhotons(named, *truth);
+  std::vector<Measured> densities;
   std::optional<Measured> density, gather;
   double best = 0;
   for (const Case& c : {Case{100, 32}, Case{800, 32}, Case{6400, 16}, Case{51200, 16}, Case{409600, 8}}) {
@@ -132,6 +174,7 @@ void AddScene(const NamedScene& named, BenchTable& table) {
     const Measured now = Measure(named.scene, *truth, settings, c.seeds);
     Add(named.name, "density", c.photons, now, density ? &*density : nullptr, table);
     density = now;
+    densities.push_back(now);
     if (!reflects || c.photons > 51200) continue;
     settings.final_gather = true;
     settings.derivatives = Derivatives::kGradient;
@@ -143,6 +186,7 @@ void AddScene(const NamedScene& named, BenchTable& table) {
       std::printf("%s: of 100 photons a final gather is %.1f times better than the best density\n", named.name.c_str(),
                   best / gathered.rms);
   }
+  PrintFall(named.name, densities);
 }
 
 int Run(const std::string& csv, const std::string& only) {

@@ -8,9 +8,10 @@
 namespace flatlight {
 namespace {
 
-// Of the brightest panel's light: what a kink changes over the shorter panel beside it. Polynomials of smooth light
-// differ by less.
-constexpr double kLeast = 1e-4;
+// Of the brightest panel's light: what a kink changes over the shorter panel beside it.
+constexpr double kStrong = 1e-4;
+// The same where polynomials are so good that a weaker one stands out; less is rounding.
+constexpr double kWeakest = 1e-9;
 
 // So near to a kink an end of what is seen is not beyond it: where a curve stands on another one it stays there, to
 // rounding.
@@ -35,6 +36,15 @@ Bend BendAt(const double* coefficients, std::size_t count, double width, bool hi
   return bend;
 }
 
+// How much of what seems to change over a length at its end is but the end of the panel's series.
+double Unknown(const double* coefficients, std::size_t count, double width, double length) {
+  constexpr double kOfOneBefore = 0.1;
+  std::array<double, kLightCoefficients> rest{};
+  rest[count - 1] = std::abs(coefficients[count - 1]) + kOfOneBefore * std::abs(coefficients[count - 2]);
+  const Bend bend = BendAt(rest.data(), count, width, true);
+  return bend[0] + length * (bend[1] + 0.5 * length * bend[2]);
+}
+
 }  // namespace
 
 LightKinks::LightKinks(std::size_t elements, const PanelMesh& mesh, const PanelLight& light) : places_(2 * elements) {
@@ -46,14 +56,17 @@ LightKinks::LightKinks(std::size_t elements, const PanelMesh& mesh, const PanelL
     if (before.element != panel.element || before.side != panel.side) continue;
     const double width_before = before.high - before.low, width = panel.high - panel.low;
     const double near = std::min(width_before, width);
-    double change = 0;
+    bool is_kink = false;
     for (std::size_t c = 0; c < light.channels(); ++c) {
       const Bend left = BendAt(light.Of(i - 1, c), light.coefficients(), width_before, true);
       const Bend right = BendAt(light.Of(i, c), light.coefficients(), width, false);
-      change = std::max(change, std::abs(right[0] - left[0]) +
-                                    near * (std::abs(right[1] - left[1]) + 0.5 * near * std::abs(right[2] - left[2])));
+      const double change = std::abs(right[0] - left[0]) +
+                            near * (std::abs(right[1] - left[1]) + 0.5 * near * std::abs(right[2] - left[2]));
+      const double unknown = Unknown(light.Of(i - 1, c), light.coefficients(), width_before, near) +
+                             Unknown(light.Of(i, c), light.coefficients(), width, near);
+      is_kink = is_kink || change > std::min(kStrong * brightest, std::max(kWeakest * brightest, unknown));
     }
-    if (change > kLeast * brightest) places_[PanelMesh::IndexOf(panel.element, panel.side)].push_back(panel.low);
+    if (is_kink) places_[PanelMesh::IndexOf(panel.element, panel.side)].push_back(panel.low);
   }
 }
 

@@ -102,7 +102,9 @@ class SeriesChart {
     if (own_circle && end.edge.kind == Edge::Kind::kHorizon) return FindOnCircle((1 / r) * from_center);
     const auto nearer = [&](const VectorSeries& v, const VectorSeries& w) {
       const ArcSeries f = FindOnCircle(v), g = FindOnCircle(w);
-      return std::abs(f[0] - end.u) <= std::abs(g[0] - end.u) ? f : g;
+      // What lies right across the circle has no number.
+      const double off = std::abs(g[0] - end.u);
+      return std::abs(f[0] - end.u) <= off || std::isnan(off) ? f : g;
     };
     const ArcSeries squared = Dot(from_center, from_center);
     if (end.own) {

@@ -174,6 +174,7 @@ void ReferenceSolver::StartRound() {
 void ReferenceSolver::StartFirstMesh() {
   const Scene& world = world_->caster->scene();
   world_->events = SortedEvents(world.elements().size(), found_);
+  world_->kinks = SortedKinks(world.elements().size(), found_);
   finder_.reset();
   found_.clear();
   const PanelMesh graded = SplitMeshAt(world, GradedMesh(world, world_->meetings, kFirstSteps),
@@ -250,7 +251,9 @@ void ReferenceSolver::Work(Worker& worker, std::size_t i) {
     case Step::kSplit: {
       const Panel& panel = world_->radiosity->mesh().panels()[i];
       const auto element = static_cast<std::size_t>(panel.element);
-      if (split_[i]) places_[i] = SplitPlaces(panel, world_->radiosity->CellsOf(i), world_->meetings[element]);
+      if (!split_[i]) return;
+      places_[i] = SplitPlaces(panel, world_->radiosity->CellsOf(i), world_->meetings[element],
+                               world_->kinks[PanelMesh::IndexOf(panel.element, panel.side)]);
       return;
     }
     case Step::kSolve:

@@ -19,6 +19,31 @@ constexpr double kRatio = 0.25;
 constexpr double kMostLeft = 0.9;
 constexpr double kParts = 4;
 constexpr double kEvenly = 0.1;
+// Of the length of a panel: kinks nearer to its ends are taken to be there.
+constexpr double kMargin = 1e-6;
+
+// Where events at an end leave the rest as it was, that is halved too.
+void HalveRest(const Panel& panel, std::vector<double>& places) {
+  double from = panel.low, widest = 0, middle = 0;
+  for (std::size_t i = 0; i <= places.size(); ++i) {
+    const double to = i < places.size() ? places[i] : panel.high;
+    if (to - from > widest) widest = to - from, middle = 0.5 * (from + to);
+    from = to;
+  }
+  if (widest > kMostLeft * (panel.high - panel.low))
+    places.insert(std::upper_bound(places.begin(), places.end(), middle), middle);
+}
+
+// The strongest inside of it.
+const Event* StrongestIn(const Panel& panel, const std::vector<Event>& kinks) {
+  const double margin = kMargin * (panel.high - panel.low);
+  const Event* strongest = nullptr;
+  auto kink = std::upper_bound(kinks.begin(), kinks.end(), panel.low + margin,
+                               [](double u, const Event& event) { return u < event.u; });
+  for (; kink != kinks.end() && kink->u < panel.high - margin; ++kink)
+    if (!strongest || kink->strength > strongest->strength) strongest = &*kink;
+  return strongest;
+}
 
 }  // namespace
 
@@ -38,8 +63,8 @@ std::vector<char> PanelsToSplit(const std::vector<double>& shares) {
   return split;
 }
 
-std::vector<double> SplitPlaces(const Panel& panel, const std::vector<Cell>& cells,
-                                const std::vector<double>& meetings) {
+std::vector<double> SplitPlaces(const Panel& panel, const std::vector<Cell>& cells, const std::vector<double>& meetings,
+                                const std::vector<Event>& kinks) {
   if (panel.high - panel.low < 4 * kShortest) return {};
   std::vector<double> places;
   if (cells.size() > kMostEvents + 1) {
@@ -61,15 +86,7 @@ std::vector<double> SplitPlaces(const Panel& panel, const std::vector<Cell>& cel
   }
   for (std::size_t k = 0; k + 1 < cells.size(); ++k) places.push_back(cells[k].high);
   if (!places.empty()) {
-    // Events at an end leave the rest as it was.
-    double from = panel.low, widest = 0, middle = 0;
-    for (std::size_t i = 0; i <= places.size(); ++i) {
-      const double to = i < places.size() ? places[i] : panel.high;
-      if (to - from > widest) widest = to - from, middle = 0.5 * (from + to);
-      from = to;
-    }
-    if (widest > kMostLeft * (panel.high - panel.low))
-      places.insert(std::upper_bound(places.begin(), places.end(), middle), middle);
+    HalveRest(panel, places);
     return places;
   }
   const auto meets = [&](double u) {
@@ -80,7 +97,11 @@ std::vector<double> SplitPlaces(const Panel& panel, const std::vector<Cell>& cel
   if (low && high) return {panel.low + kRatio * length, panel.high - kRatio * length};
   if (low) return {panel.low + kRatio * length};
   if (high) return {panel.high - kRatio * length};
-  return {panel.low + 0.5 * length};
+  const Event* const kink = StrongestIn(panel, kinks);
+  if (kink == nullptr) return {panel.low + 0.5 * length};
+  places.push_back(kink->u);
+  HalveRest(panel, places);
+  return places;
 }
 
 }  // namespace flatlight

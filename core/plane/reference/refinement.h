@@ -15,10 +15,11 @@ namespace flatlight {
 std::vector<char> PanelsToSplit(const std::vector<double>& shares);
 
 // Where to split a panel, in its chart and in their order: at events, where light is off most between them (`cells`),
-// if it has any; else near an end where another curve meets it (`meetings` of its element), else in the middle. Empty
-// if it is too short to be split.
-std::vector<double> SplitPlaces(const Panel& panel, const std::vector<Cell>& cells,
-                                const std::vector<double>& meetings);
+// if it has any; else near an end where another curve meets it (`meetings` of its element), else at the strongest kink
+// (`kinks` of its side, in order), which no polynomial follows, else in the middle. Empty if it is too short to be
+// split.
+std::vector<double> SplitPlaces(const Panel& panel, const std::vector<Cell>& cells, const std::vector<double>& meetings,
+                                const std::vector<Event>& kinks);
 
 }  // namespace flatlight
 

@@ -5,7 +5,8 @@ namespace flatlight {
 
 std::size_t SolvedWorld::bytes() const {
   std::size_t bytes = sizeof(SolvedWorld) + charts.size() * sizeof(Chart);
-  for (const std::vector<Event>& on_side : events) bytes += sizeof(std::vector<Event>) + on_side.size() * sizeof(Event);
+  for (const Events* all : {&events, &kinks})
+    for (const std::vector<Event>& on_side : *all) bytes += sizeof(std::vector<Event>) + on_side.size() * sizeof(Event);
   return bytes + (radiosity ? radiosity->memory() + radiosity->mesh().size() * Radiosity::kPanelBytes : 0);
 }
 

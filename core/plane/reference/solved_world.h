@@ -20,7 +20,7 @@ struct SolvedWorld {
   std::shared_ptr<const RayCaster> caster;
   std::vector<Chart> charts;
   std::vector<std::vector<double>> meetings;
-  Events events;
+  Events events, kinks;
   std::size_t channels = 1;
   std::optional<std::uint32_t> max_bounces;
   std::unique_ptr<Radiosity> radiosity;

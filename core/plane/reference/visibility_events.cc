@@ -28,6 +28,7 @@ constexpr double kMargin = 1e-6;
 constexpr double kClose = 1.0 / 48;
 // An event that may change less than this along a stretch is weak there.
 constexpr double kStrong = 0.5;
+constexpr double kWeakest = 0.02;  // Of those that are kept.
 constexpr double kLittle = 0.03;
 constexpr double kTurning = 0.5;
 // In the chart.
@@ -93,7 +94,7 @@ bool EventFinder::TouchesAt(const Circle& circle, Point2 at, EventPlace& place) 
     const double u = charts_[static_cast<std::size_t>(id)].Find(at);
     if (!(u >= 0 && u <= 1)) continue;
     const Side outer = scene_.element(id).Orientation() < 0 ? Side::kFront : Side::kBack;
-    place = {PanelMesh::IndexOf(id, outer), u, 0};
+    place = {PanelMesh::IndexOf(id, outer), u, 0, false};
     return true;
   }
   return false;
@@ -148,6 +149,7 @@ void EventFinder::LandAll(std::vector<Candidate>& candidates, std::vector<EventP
       if (!Reflects(id)) return;
       // The cosine is none, but turns.
       place.strength = kTurning * charts_[place.index / 2].At(place.u).speed / scene_.element(id).radius;
+      place.kink = true;
       places.push_back(place);
     };
     if (line.touches_from) touch(line.on_from);
@@ -159,10 +161,10 @@ void EventFinder::LandAll(std::vector<Candidate>& candidates, std::vector<EventP
     if (!hits[i] || !Reflects(hits[i]->element)) continue;
     const Side side = Dot(hits[i]->normal, rays[i].direction) < 0 ? Side::kFront : Side::kBack;
     const double u = charts_[static_cast<std::size_t>(hits[i]->element)].Find(hits[i]->position);
-    EventPlace place = {PanelMesh::IndexOf(hits[i]->element, side), u, 0};
+    EventPlace place = {PanelMesh::IndexOf(hits[i]->element, side), u, 0, true};
     const double near = hits[i]->distance + kBeside;
     place.strength = Strength(place, rays[i].direction, near, near + lengths[i]);
-    if (place.strength > kStrong) places.push_back(place);
+    if (place.strength > kWeakest) places.push_back(place);
   }
 }
 
@@ -176,10 +178,10 @@ bool EventFinder::JoinedTo(const Vertex& vertex, Point2 p) const {
 
 // In steps that grow from `width` on, by the chart; the place itself too.
 void EventFinder::AddAround(std::size_t index, double place, double width, std::vector<EventPlace>& places) {
-  if (place > 0 && place < 1) places.push_back({index, place, 1 / width});
+  if (place > 0 && place < 1) places.push_back({index, place, 1 / width, false});
   for (double step = width; step < 1; step *= kGrowth)
     for (const double u : {place - step, place + step})
-      if (u > 0 && u < 1) places.push_back({index, u, 1 / step});
+      if (u > 0 && u < 1) places.push_back({index, u, 1 / step, false});
 }
 
 // Around the feet of a vertex, or of a circle's nearest point, and around that point itself: a gap between two curves
@@ -274,12 +276,10 @@ void EventFinder::Find(std::size_t i, std::vector<EventPlace>& places) const {
   LandAll(candidates, places);
 }
 
-Events SortedEvents(std::size_t elements, const std::vector<std::vector<EventPlace>>& found) {
-  Events events(2 * elements);
-  for (const std::vector<EventPlace>& places : found) {
-    for (const EventPlace& place : places)
-      if (place.strength > kStrong) events[place.index].push_back({place.u, place.strength});
-  }
+namespace {
+
+// Each once.
+void Sort(Events& events) {
   for (std::vector<Event>& on_side : events) {
     std::sort(on_side.begin(), on_side.end(),
               [](const Event& a, const Event& b) { return a.u != b.u ? a.u < b.u : a.strength > b.strength; });
@@ -293,7 +293,28 @@ Events SortedEvents(std::size_t elements, const std::vector<std::vector<EventPla
     }
     on_side.resize(kept);
   }
+}
+
+}  // namespace
+
+Events SortedEvents(std::size_t elements, const std::vector<std::vector<EventPlace>>& found) {
+  Events events(2 * elements);
+  for (const std::vector<EventPlace>& places : found) {
+    for (const EventPlace& place : places)
+      if (place.strength > kStrong) events[place.index].push_back({place.u, place.strength});
+  }
+  Sort(events);
   return events;
+}
+
+Events SortedKinks(std::size_t elements, const std::vector<std::vector<EventPlace>>& found) {
+  Events kinks(2 * elements);
+  for (const std::vector<EventPlace>& places : found) {
+    for (const EventPlace& place : places)
+      if (place.kink) kinks[place.index].push_back({place.u, place.strength});
+  }
+  Sort(kinks);
+  return kinks;
 }
 
 std::vector<Cell> CellsBetween(const std::vector<Event>& events, double low, double high) {

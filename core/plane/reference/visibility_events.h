@@ -19,6 +19,7 @@ struct EventPlace {
   // How much the slope of irradiance may change there, by u, for light of radiance 1: the difference of the slopes of
   // the two sines that meet.
   double strength = 0;
+  bool kink = false;  // The course of light does change there, it is not only steep.
 };
 
 // A line through two vertices, a vertex and a circle that it touches, or two such circles, that see each other there,
@@ -87,6 +88,8 @@ struct Event {
 };
 using Events = std::vector<std::vector<Event>>;
 Events SortedEvents(std::size_t elements, const std::vector<std::vector<EventPlace>>& found);
+// Kinks alone, and weak ones too: where light is a polynomial to each side.
+Events SortedKinks(std::size_t elements, const std::vector<std::vector<EventPlace>>& found);
 
 // A stretch of a panel without an event inside, or so short that what happens there is as good as at one place.
 struct Cell {

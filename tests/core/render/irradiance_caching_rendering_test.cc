@@ -54,13 +54,15 @@ SceneMaker ReflectingFloor(bool walls, bool blocker) {
 TEST(IrradianceCachingRenderingTest, EventsAndSecondOrderAreFarAheadAlsoWithSeveralBounces) {
   for (const auto& [walls, blocker] : {std::pair(false, false), {false, true}, {true, false}, {true, true}}) {
     const auto scene = ReflectingFloor(walls, blocker).Build();
-    for (const std::uint32_t records : {10u, 16u}) {
+    for (const std::uint32_t records : {8u, 10u, 16u}) {
       Settings settings = Caching();
       settings.max_records = records;
       const double events = FromReference(scene, settings).rms;
       settings.error_control = ErrorControl::kSplitSphere;
       settings.extrapolation = 1;
-      EXPECT_GT(FromReference(scene, settings).rms, 15 * events) << walls << blocker << ' ' << records;
+      // Eight are few for two corners and a blocker's edges.
+      const double times = walls && blocker && records == 8 ? 10 : 15;
+      EXPECT_GT(FromReference(scene, settings).rms, times * events) << walls << blocker << ' ' << records;
     }
   }
 }

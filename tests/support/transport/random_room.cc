@@ -26,7 +26,7 @@ class Random {
 
 }  // namespace
 
-std::shared_ptr<const Scene> RandomRoom(std::uint64_t seed) {
+std::shared_ptr<const Scene> RandomRoom(std::uint64_t seed, std::uint32_t times) {
   Random random(seed);
   const double most = seed % 4 == 0 ? 0.97 : 0.8;
   const auto look = [&] { return Look{.reflectance = {random.Between(0.3, most)}}; };
@@ -52,11 +52,11 @@ std::shared_ptr<const Scene> RandomRoom(std::uint64_t seed) {
       maker.Arc(name, {{x, y}, size / 2, angle, random.Between(0, 1) < 0.5 ? -kTurn : random.Between(1, 5)}, look());
     }
   }
-  maker.Probe("room", 24).Probe("lamp", 5).Probe("thing0", 5);
+  maker.Probe("room", 24 * times).Probe("lamp", 5 * times).Probe("thing0", 5 * times);
   return maker.Build();
 }
 
-std::shared_ptr<const Scene> HardRoom(std::uint64_t seed) {
+std::shared_ptr<const Scene> HardRoom(std::uint64_t seed, std::uint32_t times) {
   Random random(~seed);
   const auto chance = [&](double p) { return random.Between(0, 1) < p; };
   const auto power_between = [&](double low, double high) {  // Even in the exponent.
@@ -121,7 +121,8 @@ std::shared_ptr<const Scene> HardRoom(std::uint64_t seed) {
       maker.Segment(name, {x, height}, {x + 0.3 * size * u.x, height + size * (0.1 + std::abs(u.y))}, look());
     }
   }
-  maker.Probe("room", 24).Probe("thing0", 8).Probe("thing0", 4, Side::kBack).Probe("lamp", 4);
+  maker.Probe("room", 24 * times).Probe("thing0", 8 * times).Probe("thing0", 4 * times, Side::kBack);
+  maker.Probe("lamp", 4 * times);
   return maker.Build();
 }
 

@@ -10,13 +10,13 @@
 namespace flatlight {
 
 // Grey rooms, closed or open to the sky, with a lamp, three straight and round things, and a light without a surface in
-// every third; every fourth reflects up to 0.97, the others up to 0.8. 34 probe points.
-std::shared_ptr<const Scene> RandomRoom(std::uint64_t seed);
+// every third; every fourth reflects up to 0.97, the others up to 0.8. 34 probe points, times `times`.
+std::shared_ptr<const Scene> RandomRoom(std::uint64_t seed, std::uint32_t times = 1);
 
 // Rooms that are hard to solve, grey: walls that meet at angles down to 3 degrees, round walls, gaps down to a
 // millionth of the room, things that stand on a wall or cross, black and nearly white ones side by side (up to 0.9999),
-// lamps far smaller than the room, lights without a surface, a sky. 40 probe points.
-std::shared_ptr<const Scene> HardRoom(std::uint64_t seed);
+// lamps far smaller than the room, lights without a surface, a sky. 40 probe points, times `times`.
+std::shared_ptr<const Scene> HardRoom(std::uint64_t seed, std::uint32_t times = 1);
 
 }  // namespace flatlight
 

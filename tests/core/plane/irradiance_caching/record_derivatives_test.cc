@@ -165,6 +165,15 @@ TEST(RecordDerivativesTest, LightOfAllBounces) {
   ExpectReflectedAgrees(bowl, false);
 }
 
+// The horizon of the floor meets the dome's circle at the dome's foot and right across.
+TEST(RecordDerivativesTest, DomeWithItsCenterOnTheFloor) {
+  SceneMaker dome;
+  dome.Segment("floor", {-1, 0}, {1, 0}, {.reflectance = {0.8}}).Probe("floor", 15);
+  dome.Arc("dome", {{0.2, 0}, 0.8, 0, 2}, {.reflectance = {0.8}});
+  dome.Segment("lamp", {0.1, 0.6}, {-0.1, 0.6}, {.reflectance = {0.8}, .radiance = {1}});
+  ExpectReflectedAgrees(dome, false);
+}
+
 // Shadows on what reflects make kinks in higher derivatives elsewhere, so here there are none.
 TEST(RecordDerivativesTest, HigherOnesOfAllBounces) {
   SceneMaker room;

@@ -34,16 +34,44 @@ TEST(RefinementTest, CellsLieBetweenStrongEvents) {
 TEST(RefinementTest, APanelIsSplitWhereItIsOffMost) {
   std::vector<Cell> cells = ManyCells();
   cells[12].off = 1;
-  const std::vector<double> places = SplitPlaces({}, cells, {});
+  const std::vector<double> places = SplitPlaces({}, cells, {}, {});
   ASSERT_FALSE(places.empty());
   EXPECT_LE(places.size(), 3u);
   EXPECT_NEAR(places.back(), 0.65, 0.051);
 }
 
 TEST(RefinementTest, APanelThatIsOffNowhereIsSplitEvenly) {
-  const std::vector<double> places = SplitPlaces({}, ManyCells(), {});
+  const std::vector<double> places = SplitPlaces({}, ManyCells(), {}, {});
   ASSERT_EQ(places.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(places[k], 0.25 * static_cast<double>(k + 1), 0.051);
+}
+
+// Where nothing else tells; what is at an end already is left, and so is most of a panel beside a kink near its end.
+TEST(RefinementTest, APanelIsSplitAtItsStrongestKink) {
+  const std::vector<Event> kinks = {{0.2, 0.1}, {0.7, 0.4}, {0.8, 0.3}};
+  EXPECT_EQ(SplitPlaces({}, {}, {}, kinks), std::vector<double>{0.7});
+  Panel panel;
+  panel.low = 0.7;
+  EXPECT_EQ(SplitPlaces(panel, {}, {}, kinks), std::vector<double>{0.8});
+  panel.low = 0.8;
+  EXPECT_EQ(SplitPlaces(panel, {}, {}, kinks), std::vector<double>{0.9});
+  panel.low = 0.1, panel.high = 0.6;
+  EXPECT_EQ(SplitPlaces(panel, {}, {}, kinks), std::vector<double>{0.2});
+  panel.low = 0.199;
+  EXPECT_EQ(SplitPlaces(panel, {}, {}, kinks), (std::vector<double>{0.2, 0.4}));
+}
+
+TEST(RefinementTest, KinksAreThoseOfLightAlone) {
+  const std::vector<std::vector<EventPlace>> found = {{{1, 0.5, 0.1, true}, {1, 0.6, 9, false}, {0, 0.3, 9, true}},
+                                                      {{1, 0.2, 4, true}, {1, 0.5, 0.3, true}}};
+  const Events kinks = SortedKinks(1, found), events = SortedEvents(1, found);
+  ASSERT_EQ(kinks[1].size(), 2u);
+  EXPECT_EQ(kinks[1][0].u, 0.2);
+  EXPECT_EQ(kinks[1][1].u, 0.5);
+  EXPECT_EQ(kinks[1][1].strength, 0.3);
+  EXPECT_EQ(kinks[0].size(), 1u);
+  ASSERT_EQ(events[1].size(), 2u);  // The weak ones are left out.
+  EXPECT_EQ(events[1][1].u, 0.6);
 }
 
 }  // namespace
