@@ -64,7 +64,7 @@ class PointBlocks {
   // Of a point that has blocks; of single samples, to of means of that many.
   Missable OfMeans(std::size_t point, const Missable& missable) const;
   // The estimate from some halves of a point that has blocks. `missable` and `nearby` are of single samples, not of
-  // replicates' means.
+  // replicates' means, but for nearby.missed, which is of those.
   MeanEstimate Estimate(std::size_t point, std::size_t channel, Halves halves, const Missable& missable,
                         const NearbyVariance& nearby) const;
 

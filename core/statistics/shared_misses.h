@@ -26,7 +26,8 @@ class SharedMisses {
   void Add(std::span<const double> values, double event);
   // The points of another one.
   void Add(const SharedMisses& other);
-  // Whether some half met an event that the other one did not.
+  // Whether halves that met an event which the other one did not are higher for it on the whole, as they are where
+  // events bring light.
   bool any() const { return offs_ > 0; }
   // The mean square, beyond the variance of the mean, of all points where values agree; `step`: by how much an event
   // changes the mean of half of a point's values. It is told by points that meet an event twice, and is noisy where few

@@ -59,7 +59,8 @@ absl::StatusOr<JobRecord> Scheduler::Submit(std::shared_ptr<const JobSpec> spec,
     if (!too_late) Enter(run, done.get());
   }
   if (too_late) {
-    store_.Delete(run->spec->id).IgnoreError();
+    // Told to come back only if it is not there when they do.
+    if (absl::Status deleted = store_.Delete(run->spec->id); !deleted.ok()) return deleted;
     return draining;
   }
   TellListener();

@@ -28,6 +28,7 @@ namespace {
 constexpr std::uint32_t kDense = 8;          // So many times the points of a test's room.
 constexpr double kRounding = 1e-9;           // Relative to irradiance: less is no error.
 constexpr double kSecondsOfReference = 2;    // What it is off by then is in its bound.
+constexpr double kDoubt = 0.1;               // Of what is allowed: the most that the truth may be unsure by.
 constexpr double kDark = 0.01;               // Of the mean: what errors of dark points are relative to.
 constexpr std::uint64_t kFirstSeed = 1000;   // Tests of other things have those below.
 constexpr std::uint32_t kCheckedScenes = 8;  // Of each kind.
@@ -39,11 +40,13 @@ struct Kind {
 constexpr Kind kKinds[] = {{"random room", RandomRoom}, {"hard room", HardRoom}};
 
 // What a check allows: shares of points, and the largest ratio.
-constexpr double kMostAbove = 0.02, kMostFarAbove = 0.005, kWorst = 10;
+// Twice and more what the bench finds in many rooms, so that other roundings pass and a wrong estimate does not.
+constexpr double kMostAbove = 0.02, kMostFarAbove = 0.005, kMostDoubtful = 0.02, kWorst = 10;
 
 struct Found {
   double points = 0, records = 0, above = 0, far_above = 0, above_tolerance = 0;
-  double worst = 0;  // In units of the estimate.
+  double doubtful = 0;  // Points of which reference knows too little to tell.
+  double worst = 0;     // In units of the estimate.
   std::uint64_t worst_seed = 0;
 
   void Add(const Field& field, const Field& truth, double tolerance, std::uint64_t seed) {
@@ -54,13 +57,15 @@ struct Found {
                           static_cast<double>(right.irradiance.size());
       for (std::size_t i = 0; i < right.irradiance.size(); ++i, ++points) {
         const double correct = right.irradiance[i];
+        const double allowed = tolerance * std::max(correct, kDark * mean);
         const double off = std::abs(probe.irradiance[i] - correct) - right.irradiance_error[i] - kRounding * correct;
-        if (off > tolerance * std::max(correct, kDark * mean)) ++above_tolerance;
-        if (!(off > 0)) continue;
+        if (!(off <= allowed)) ++above_tolerance;
+        if (!(right.irradiance_error[i] <= kDoubt * allowed)) ++doubtful;
+        if (off <= 0) continue;
         const double ratio = off / std::max(probe.estimated_error[i], kRounding * correct);
-        if (ratio > 1) ++above;
-        if (ratio > 2) ++far_above;
-        if (ratio > worst) worst = ratio, worst_seed = seed;
+        if (!(ratio <= 1)) ++above;
+        if (!(ratio <= 2)) ++far_above;
+        if (!(ratio <= worst)) worst = ratio, worst_seed = seed;
       }
     }
   }
@@ -112,9 +117,14 @@ int Check() {
   bool right = true;
   for (const Kind& kind : kKinds) {
     const Found f = Measure(kind, kCheckedScenes, {{0.01, 2}})[0];
-    std::printf("%s: above the estimate at %.2f %% of %.0f points, above twice at %.2f %%, at worst %.1f times\n",
-                kind.name, 100 * f.above / f.points, f.points, 100 * f.far_above / f.points, f.worst);
-    right = right && f.above < kMostAbove * f.points && f.far_above < kMostFarAbove * f.points && f.worst < kWorst;
+    std::printf(
+        "%s: above the estimate at %.2f %% of %.0f points, above twice at %.2f %%, at worst %.1f times; the truth is "
+        "unsure "
+        "at %.2f %%\n",
+        kind.name, 100 * f.above / f.points, f.points, 100 * f.far_above / f.points, f.worst,
+        100 * f.doubtful / f.points);
+    right = right && f.above < kMostAbove * f.points && f.far_above < kMostFarAbove * f.points &&
+            f.doubtful < kMostDoubtful * f.points && f.worst < kWorst;
   }
   return right ? 0 : 1;
 }

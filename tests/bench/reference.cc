@@ -116,7 +116,7 @@ struct Widths {
   }
 };
 
-void CheckBounds(const char* kind, std::shared_ptr<const Scene> (*room)(std::uint64_t), int derivatives,
+void CheckBounds(const char* kind, std::shared_ptr<const Scene> (*room)(std::uint64_t, std::uint32_t), int derivatives,
                  std::uint64_t first, std::uint64_t rooms) {
   Widths widths[3];
   std::size_t beyond = 0;
@@ -124,7 +124,7 @@ void CheckBounds(const char* kind, std::shared_ptr<const Scene> (*room)(std::uin
   options.channels = 1;
   options.derivatives = derivatives;
   for (std::uint64_t seed = first; seed < first + rooms; ++seed) {
-    const auto scene = room(seed);
+    const auto scene = room(seed, 1);
     options.target_error = seed % 3 == 0 ? 1e-1 : seed % 3 == 1 ? 1e-2 : 1e-3;
     const SolvedReference coarse = SolveReference(scene, options, kThreads);
     options.target_error *= 1e-3;

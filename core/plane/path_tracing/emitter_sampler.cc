@@ -71,9 +71,9 @@ Spectrum EmitterSampler::Unblocked(const Vertex& vertex, const EmitterSight& sig
     for (int c = 0; c < kMaxChannels; ++c) brightest[c] = std::max(brightest[c], piece.radiance[c]);
   }
   // Emitters in one direction hide each other: all directions at the largest radiance are the most there can be. The
-  // chances that a tree gives are off by some factor from what each would have to have.
+  // chances that a tree gives, or a closer look, are off by some factor from what each would have to have.
   const double off = weighs() ? 1 : kTreeOff;
-  for (int c = 0; c < kMaxChannels; ++c) sum[c] = std::min(off * sum[c], 2 * brightest[c]);
+  for (int c = 0; c < kMaxChannels; ++c) sum[c] = off * std::min(sum[c], 2 * brightest[c]);
   return sum;
 }
 

@@ -39,8 +39,8 @@ class EmitterSampler {
   // `pieces`: which to sample, in the order of elements; all others never light a vertex that will be asked about.
   EmitterSampler(std::shared_ptr<const Scene> scene, const std::vector<ElementId>& pieces);
 
-  // Irradiance from all pieces but those whose way is known to be clear or hidden, if nothing blocked them; a guess for
-  // arcs seen partly from inside, and for thousands of pieces.
+  // Irradiance from all pieces but those whose way is known to be clear or hidden, if nothing blocked them, as one
+  // sample may give it; a guess for arcs seen partly from inside, and for thousands of pieces.
   Spectrum Unblocked(const Vertex& vertex, const EmitterSight& sight) const;
   // The rounding of directions in irradiance from all pieces that are not hidden.
   Spectrum Rounding(const Vertex& vertex, const EmitterSight& sight) const;
@@ -57,8 +57,9 @@ class EmitterSampler {
     View(const EmitterSampler& sampler, const Vertex& vertex, const EmitterSight& sight);
     View(const View&) = delete;
     View& operator=(const View&) = delete;
-    // For a vertex from which many samples will be asked: takes longer, casting a ray to each of up to some hundred
-    // pieces or so, and then chooses better among many.
+    // For a vertex from which many samples will be asked: takes longer, and then chooses better among many. Casts a ray
+    // to the middle of each piece that it sees one by one (up to EmitterTree::kMostClusters leaves of pieces); where
+    // that is hidden, the piece gets a part of its weight.
     void LookCloser(const RayCaster& caster);
 
     // No emitter can light the vertex, certain light aside.
@@ -77,7 +78,8 @@ class EmitterSampler {
     }
     // Emitter sampling alone has no more variance than cosine sampling alone: rays that hit an emitter by chance need
     // not be counted. The variances are T * E - E^2 and 2 * (integral of L^2 V ds) - E^2, where T is the irradiance
-    // that emitters would give unblocked; so it is enough that T <= 2 * (smallest radiance in view).
+    // that emitters would give unblocked; so it is enough that T <= 2 * (smallest radiance in view). After a closer
+    // look it is likely, not certain: what those rays met stands for the pieces.
     bool sufficient() const { return sufficient_; }
     // A point chosen by one number in [0, 1). Absent if it does not light the vertex.
     std::optional<EmitterSample> Sample(double u) const;

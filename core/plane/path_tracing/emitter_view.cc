@@ -13,7 +13,6 @@ namespace {
 
 // Of a piece's weight, where its middle is hidden: what a closer look leaves to those of its points that are not.
 constexpr double kBlockedShare = 0.25;
-constexpr double kSurely = 1;
 
 }  // namespace
 
@@ -50,9 +49,12 @@ void EmitterSampler::View::LookCloser(const RayCaster& caster) {
     }
     if (leaf.count == 0) groups_.push_back({guess, sampler_.tree_.Begin(cluster), cluster, {}});
   });
+  const auto is_tested = [](const Group& group) {
+    return group.cluster == kOnePiece && group.seen.range.kind == EmitterRange::Kind::kSines;
+  };
   std::vector<SurfacePoint> places;
   for (const Group& group : groups_)
-    if (group.cluster == kOnePiece) places.push_back(MiddleOf(group));
+    if (is_tested(group)) places.push_back(MiddleOf(group));
   const std::vector<SurfacePoint> here(places.size(), vertex_.at);
   const std::unique_ptr<bool[]> visible(new bool[places.size()]);
   caster.Visible(here, places, {visible.get(), places.size()});
@@ -63,9 +65,8 @@ void EmitterSampler::View::LookCloser(const RayCaster& caster) {
   std::size_t tested = 0;
   for (Group& group : groups_) {
     double weight = group.weight_end;
-    if (group.cluster != kOnePiece || group.seen.range.kind == EmitterRange::Kind::kLength) {
+    if (!is_tested(group)) {
       all_known = false;
-      tested += group.cluster == kOnePiece ? 1 : 0;
     } else if (visible[tested++]) {
       likely += weight;
       squared += weight * sampler_.pieces_[group.first].brightness;
@@ -74,13 +75,12 @@ void EmitterSampler::View::LookCloser(const RayCaster& caster) {
     }
     group.weight_end = total_ += weight;
   }
-  sufficient_ = all_known && total_ * likely <= kSurely * (2 * squared);
+  sufficient_ = all_known && likely > 0 && total_ * likely <= 2 * squared;
 }
 
 SurfacePoint EmitterSampler::View::MiddleOf(const Group& group) const {
   const Piece& piece = sampler_.pieces_[group.first];
   const EmitterRange& range = group.seen.range;
-  if (range.kind == EmitterRange::Kind::kLength) return {FrameAt(piece.element, 0.5).position, piece.id};
   const double sine = std::clamp(range.low + 0.5 * range.width, -1.0, 1.0);
   return {PointInDirection(piece.element, range, vertex_, vertex_.Direction(sine, CosineOf(sine))), piece.id};
 }

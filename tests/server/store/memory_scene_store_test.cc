@@ -42,6 +42,7 @@ TEST_F(MemorySceneStoreTest, TakesAFileInPieces) {
   EXPECT_EQ(*store_.Upload(kOwner, hash_, text_.size(), 0, text_.substr(0, 5)), 5u);
   EXPECT_EQ(*store_.Upload(kOwner, hash_, text_.size(), 0, ""), 5u) << "a call without data asks";
   EXPECT_THAT(store_.Get(hash_), StatusIs(kNotFound, _)) << "not complete";
+  EXPECT_EQ(*store_.Upload(kOwner, hash_, text_.size(), 0, text_.substr(0, 5)), 5u) << "said twice";
   EXPECT_EQ(*store_.Upload(kOwner, hash_, text_.size(), 5, text_.substr(5)), text_.size());
   EXPECT_EQ(*store_.Get(hash_)->bytes, text_);
   EXPECT_EQ(*store_.Upload(kOwner, hash_, text_.size(), 0, text_), text_.size()) << "all is there already";
@@ -49,7 +50,7 @@ TEST_F(MemorySceneStoreTest, TakesAFileInPieces) {
 
 TEST_F(MemorySceneStoreTest, ThePlaceOfAPieceMustBeRight) {
   ASSERT_THAT(store_.Upload(kOwner, hash_, text_.size(), 0, text_.substr(0, 5)), IsOk());
-  EXPECT_THAT(store_.Upload(kOwner, hash_, text_.size(), 0, text_.substr(0, 5)),
+  EXPECT_THAT(store_.Upload(kOwner, hash_, text_.size(), 3, text_.substr(3, 5)),
               StatusIs(kOutOfRange, HasSubstr("5 bytes are there")));
   EXPECT_THAT(store_.Upload(kOwner, hash_, text_.size(), 5, text_), StatusIs(kInvalidArgument, HasSubstr("missing")));
   EXPECT_THAT(store_.Upload(kOwner, hash_, text_.size() + 1, 5, "x"),

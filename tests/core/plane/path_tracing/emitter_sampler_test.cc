@@ -158,5 +158,38 @@ TEST(EmitterSamplerTest, SamplesHaveTheDensityOfHits) {
   }
 }
 
+// What a ray to the middle of a piece meets decides how often it is sampled, and whether sampling is enough.
+TEST(EmitterSamplerTest, ACloserLookGivesWhatIsHiddenAQuarter) {
+  for (const bool all_hidden : {false, true}) {
+    SceneMaker maker;
+    for (int i = 0; i < 20; ++i) {
+      const double x = i - 9.5;
+      maker.Segment("lamp " + std::to_string(i), {x + 0.4, 5}, {x - 0.4, 5}, {.radiance = {1}});
+    }
+    maker.Segment("wall", {all_hidden ? 9.0 : 0.0, 1}, {-9, 1}, {});
+    maker.PointProbe({0, 0}, {0, 1});
+    const std::shared_ptr<const Scene> scene = maker.Build();
+    std::vector<ElementId> pieces;
+    for (std::uint32_t e = 0; e < 20; ++e) pieces.push_back(static_cast<ElementId>(e));
+    const RayCaster caster(scene);
+    const EmitterSampler sampler(scene, pieces);
+    const Vertex vertex{{{0, 0}, ElementId::kNone}, {0, 1}};
+    EmitterSampler::View view(sampler, vertex, {});
+    view.LookCloser(caster);
+    const auto density = [&](std::uint32_t lamp) {
+      const Element& element = scene->element(static_cast<ElementId>(lamp));
+      const Point2 middle = element.a + 0.5 * (element.b - element.a);
+      const Vector2 direction = Normalized(middle - vertex.at.position);
+      const Hit hit{Length(middle - vertex.at.position), static_cast<ElementId>(lamp), middle,
+                    FrontNormal(element, middle)};
+      return view.Density(hit, direction, direction.y);
+    };
+    for (std::uint32_t left = 0; left < 10; ++left) {
+      EXPECT_NEAR(density(left) / density(19 - left), all_hidden ? 1 : 0.25, 1e-12) << left;
+    }
+    EXPECT_EQ(view.sufficient(), !all_hidden);
+  }
+}
+
 }  // namespace
 }  // namespace flatlight
