@@ -51,7 +51,7 @@ bool ExactRendering::Work(std::size_t first, std::size_t last, const Cancellatio
       [&] { return std::make_unique<ExactSolver>(*scene_, caster_->bvh(), options_, triangulation_.get()); });
   std::size_t i = first;
   for (; i < last && !cancellation.cancelled(); ++i) {
-    values_[i] = solver->Evaluate(*points_[i]);
+    solver->Evaluate(*points_[i], values_[i]);
     const double angle = 2 * points_[i]->half_angle;
     if (angle > 0) {
       values_[i].irradiance = (1 / angle) * values_[i].irradiance;

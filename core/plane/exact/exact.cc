@@ -144,9 +144,9 @@ ExactSolver::ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions option
   }
 }
 
-ExactValue ExactSolver::Evaluate(const Receiver& receiver) {
-  ExactValue value;
-  if (scene_.traits().emitting_curves == 0 && !scene_.traits().environment) return value;
+void ExactSolver::Evaluate(const Receiver& receiver, ExactValue& value) {
+  value = ExactValue();
+  if (scene_.traits().emitting_curves == 0 && !scene_.traits().environment) return;
   if (options_.channels == 1) {
     Add<1>(receiver, value);
   } else {
@@ -162,7 +162,6 @@ ExactValue ExactSolver::Evaluate(const Receiver& receiver) {
       (*spectrum)[channel] = (*spectrum)[0];
     }
   }
-  return value;
 }
 
 template <int kChannels>

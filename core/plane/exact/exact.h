@@ -59,7 +59,13 @@ class ExactSolver {
   // tree. The values are the same; those of the first kind come sooner.
   ExactSolver(const Scene& scene, const Bvh& bvh, ExactOptions options, const Triangulation* triangulation = nullptr);
 
-  ExactValue Evaluate(const Receiver& receiver);
+  ExactValue Evaluate(const Receiver& receiver) {
+    ExactValue value;
+    Evaluate(receiver, value);
+    return value;
+  }
+  // The same in its place, where many are kept: what has just been written in parts is slow to be copied.
+  void Evaluate(const Receiver& receiver, ExactValue& value);
 
   // Boxes, elements and triangles looked at so far.
   double tests() const { return gatherer_.tests() + (view_ ? view_->steps() : 0); }
