@@ -252,14 +252,15 @@ TEST_F(QuotaTest, StorageOfScenes) {
 
 TEST_F(QuotaTest, StorageOfJobs) {
   StartWith({});
+  ASSERT_TRUE(TryCreate("bob").ok());
+  const double request = QuotasOf("bob").storage_bytes().used();
+  EXPECT_GT(request, 100) << "of a job that has no result yet";
   ASSERT_TRUE(TryCreate("ada", 16).ok());
-  const double request = QuotasOf("ada").storage_bytes().used();
-  EXPECT_GT(request, 100);
   const std::string job = job_.name();
   ASSERT_TRUE(Watch("ada", job).ok());
   const double whole = QuotasOf("ada").storage_bytes().used();
   EXPECT_GT(whole, request + 100) << "the result too";
-  EXPECT_EQ(QuotasOf("bob").storage_bytes().used(), 0);
+  EXPECT_EQ(QuotasOf("gus").storage_bytes().used(), 0);
   Restart();
   EXPECT_EQ(QuotasOf("ada").storage_bytes().used(), whole);
   server_.reset();
