@@ -70,6 +70,18 @@ HWY_INLINE hn::Mask<Doubles> IsArc(const CurveBlock& block, std::uint32_t lane) 
   return hn::RebindMask(Doubles(), hn::Lt(ids, hn::Zero(integers)));
 }
 
+// Where the ends of segments, and of chords of arcs, lie as seen from a place.
+struct LaneEnds {
+  hn::Vec<Doubles> ax, ay, bx, by;
+};
+
+HWY_INLINE LaneEnds EndsFrom(Point2 place, const CurveBlock& block, std::uint32_t lane) {
+  const Doubles d;
+  const auto x = hn::Set(d, place.x), y = hn::Set(d, place.y);
+  return {hn::Sub(hn::Load(d, block.ax + lane), x), hn::Sub(hn::Load(d, block.ay + lane), y),
+          hn::Sub(hn::Load(d, block.bx + lane), x), hn::Sub(hn::Load(d, block.by + lane), y)};
+}
+
 // Lanes whose arc the line may meet ahead of its origin: an arc of at most a quarter leaves its chord by at most 0.21
 // of the chord's length.
 HWY_INLINE std::uint32_t ArcsNear(const Line& line, const CurveBlock& block) {
@@ -78,10 +90,7 @@ HWY_INLINE std::uint32_t ArcsNear(const Line& line, const CurveBlock& block) {
   const auto bulge = hn::Set(d, 0.25 * line.length), slack = hn::Set(d, line.slack);
   std::uint32_t bits = 0;
   for (std::uint32_t lane = 0; lane < CurveBlock::kWidth; lane += kBlockLanes) {
-    const auto ax = hn::Sub(hn::Load(d, block.ax + lane), hn::Set(d, line.origin.x));
-    const auto ay = hn::Sub(hn::Load(d, block.ay + lane), hn::Set(d, line.origin.y));
-    const auto bx = hn::Sub(hn::Load(d, block.bx + lane), hn::Set(d, line.origin.x));
-    const auto by = hn::Sub(hn::Load(d, block.by + lane), hn::Set(d, line.origin.y));
+    const auto [ax, ay, bx, by] = EndsFrom(line.origin, block, lane);
     const auto chord = hn::Add(hn::Abs(hn::Sub(bx, ax)), hn::Abs(hn::Sub(by, ay)));
     const auto aside = hn::Add(hn::Mul(chord, bulge), slack);
     const auto side_a = hn::Sub(hn::Mul(dx, ay), hn::Mul(dy, ax)), side_b = hn::Sub(hn::Mul(dx, by), hn::Mul(dy, bx));
@@ -98,10 +107,7 @@ HWY_INLINE std::uint32_t LanesAround(Point2 place, double distance, const CurveB
   const Doubles d;
   std::uint32_t bits = 0;
   for (std::uint32_t lane = 0; lane < CurveBlock::kWidth; lane += kBlockLanes) {
-    const auto ax = hn::Sub(hn::Load(d, block.ax + lane), hn::Set(d, place.x));
-    const auto ay = hn::Sub(hn::Load(d, block.ay + lane), hn::Set(d, place.y));
-    const auto bx = hn::Sub(hn::Load(d, block.bx + lane), hn::Set(d, place.x));
-    const auto by = hn::Sub(hn::Load(d, block.by + lane), hn::Set(d, place.y));
+    const auto [ax, ay, bx, by] = EndsFrom(place, block, lane);
     const auto chord = hn::Add(hn::Abs(hn::Sub(bx, ax)), hn::Abs(hn::Sub(by, ay)));
     const auto away = hn::Add(hn::Mul(chord, hn::Set(d, 0.25)), hn::Set(d, distance));
     const auto along_x = hn::And(hn::Le(hn::Min(ax, bx), away), hn::Ge(hn::Max(ax, bx), hn::Neg(away)));
@@ -126,10 +132,7 @@ HWY_INLINE std::uint32_t SegmentsAhead(const Line& line, const CurveBlock& block
   const auto dx = hn::Set(d, line.direction.x), dy = hn::Set(d, line.direction.y), slack = hn::Set(d, line.slack);
   std::uint32_t bits = 0;
   for (std::uint32_t lane = 0; lane < CurveBlock::kWidth; lane += kBlockLanes) {
-    const auto ax = hn::Sub(hn::Load(d, block.ax + lane), hn::Set(d, line.origin.x));
-    const auto ay = hn::Sub(hn::Load(d, block.ay + lane), hn::Set(d, line.origin.y));
-    const auto bx = hn::Sub(hn::Load(d, block.bx + lane), hn::Set(d, line.origin.x));
-    const auto by = hn::Sub(hn::Load(d, block.by + lane), hn::Set(d, line.origin.y));
+    const auto [ax, ay, bx, by] = EndsFrom(line.origin, block, lane);
     const auto side_a = hn::Sub(hn::Mul(dx, ay), hn::Mul(dy, ax)), side_b = hn::Sub(hn::Mul(dx, by), hn::Mul(dy, bx));
     const auto way_a = hn::Add(hn::Mul(ax, dx), hn::Mul(ay, dy)), way_b = hn::Add(hn::Mul(bx, dx), hn::Mul(by, dy));
     auto met = hn::And(hn::Le(hn::Min(side_a, side_b), slack), hn::Ge(hn::Max(side_a, side_b), hn::Neg(slack)));

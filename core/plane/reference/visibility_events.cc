@@ -278,8 +278,14 @@ void EventFinder::Find(std::size_t i, std::vector<EventPlace>& places) const {
 
 namespace {
 
-// Each once.
-void Sort(Events& events) {
+// Those that `counts`, in order and each once.
+template <typename Counts>
+Events Sorted(std::size_t elements, const std::vector<std::vector<EventPlace>>& found, const Counts& counts) {
+  Events events(2 * elements);
+  for (const std::vector<EventPlace>& places : found) {
+    for (const EventPlace& place : places)
+      if (counts(place)) events[place.index].push_back({place.u, place.strength});
+  }
   for (std::vector<Event>& on_side : events) {
     std::sort(on_side.begin(), on_side.end(),
               [](const Event& a, const Event& b) { return a.u != b.u ? a.u < b.u : a.strength > b.strength; });
@@ -293,28 +299,17 @@ void Sort(Events& events) {
     }
     on_side.resize(kept);
   }
+  return events;
 }
 
 }  // namespace
 
 Events SortedEvents(std::size_t elements, const std::vector<std::vector<EventPlace>>& found) {
-  Events events(2 * elements);
-  for (const std::vector<EventPlace>& places : found) {
-    for (const EventPlace& place : places)
-      if (place.strength > kStrong) events[place.index].push_back({place.u, place.strength});
-  }
-  Sort(events);
-  return events;
+  return Sorted(elements, found, [](const EventPlace& place) { return place.strength > kStrong; });
 }
 
 Events SortedKinks(std::size_t elements, const std::vector<std::vector<EventPlace>>& found) {
-  Events kinks(2 * elements);
-  for (const std::vector<EventPlace>& places : found) {
-    for (const EventPlace& place : places)
-      if (place.kink) kinks[place.index].push_back({place.u, place.strength});
-  }
-  Sort(kinks);
-  return kinks;
+  return Sorted(elements, found, [](const EventPlace& place) { return place.kink; });
 }
 
 std::vector<Cell> CellsBetween(const std::vector<Event>& events, double low, double high) {
