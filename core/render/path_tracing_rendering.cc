@@ -51,8 +51,10 @@ class PathSampler final : public PointSampler {
    public:
     Paths(const PathSampler& sampler, std::size_t point)
         : sampler_(sampler), start_(sampler.tracer_, sampler.points_[point], sampler.SightFrom(point)) {
-      for (std::size_t replicate = 0; replicate < kReplicates; ++replicate)
-        streams_.emplace_back(sampler.seed_, point, replicate);
+      static_assert(kHalfReplicates == SampleStream::kMembers);
+      for (std::uint32_t replicate = 0; replicate < kReplicates; ++replicate)
+        streams_.push_back(SampleStream::Member(sampler.seed_, point, replicate / SampleStream::kMembers,
+                                                replicate % SampleStream::kMembers));
     }
 
     void AddBlock(std::uint32_t block, const Cancellation& cancellation, std::span<double> sums,
@@ -149,7 +151,7 @@ std::shared_ptr<const Field> PathTracingRendering::Snapshot() const {
   const double scale = scene_->frame().radiance_scale;
   // Rays meet the arcs that follow Béziers: where there is hardly any noise, that counts.
   const double followed = scene_->bezier_distance();
-  const std::vector<ProgressiveSampling::PointValue> of_points = sampling_.AllValues();
+  const std::vector<ProgressiveSampling::PointValue> of_points = sampling_.Values();
   std::size_t point = 0;
   for (const Probe& probe : scene_->probes()) {
     ProbeField values;

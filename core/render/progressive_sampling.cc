@@ -17,8 +17,6 @@ using Seconds = std::chrono::duration<double>;
 constexpr std::uint64_t kFirstTestBlocks = 64 / PointSampler::kBlockSamples;
 // The dimmest that the target error is relative to, in means of the probe (DESIGN 3).
 constexpr double kDarkest = 0.01;
-// Bright samples are looked for at so many points on either side: they get light in much the same ways.
-constexpr std::size_t kNeighbours = 16;
 
 Clock::Time Later(Clock::Time time, Clock::Duration duration) {
   // A time before the clock's zero, of a resumed rendering, has more room than a duration can hold.
@@ -92,33 +90,38 @@ void ProgressiveSampling::EndRound(Clock::Time now) {
 }
 
 void ProgressiveSampling::OfferHalves() {
-  const std::size_t points = blocks_.points();
-  if (pilot_means_[0].empty() && points > 0 && blocks_.blocks(0) >= kFirstTestBlocks) {
+  std::vector<std::array<CrossedHalves::HalfEstimate, 2>> halves(blocks_.points());
+  std::vector<PointEstimates> estimates;
+  for (std::size_t probe = 0; probe < probe_ends_.size(); ++probe) estimates.push_back(EstimatesOf(probe));
+  for (std::size_t point = 0; point < halves.size(); ++point)
+    if (!halves_[point].decided()) halves[point] = HalvesOf(point, estimates[probe_of_point_[point]]);
+  if (pilot_means_[0].empty() && !halves.empty() && blocks_.blocks(0) >= kFirstTestBlocks) {
     for (const std::size_t half : {0, 1}) {
-      pilot_means_[half] = MeansOverProbes([&](std::size_t point) { return HalfEstimates(point)[half]; });
+      pilot_means_[half] = MeansOverProbes([&](std::size_t point) -> const auto& { return halves[point][half]; });
     }
   }
-  for (std::size_t point = 0; point < points; ++point) {
+  for (std::size_t point = 0; point < halves.size(); ++point) {
     if (halves_[point].decided() || blocks_.blocks(point) < kFirstTestBlocks) continue;
     std::array<CrossedHalves::Target, 2> targets;
     for (std::size_t half = 0; half < 2; ++half) {
       targets[half].relative = *goal_.target_error;
       for (std::size_t c = 0; c < channels(); ++c) {
         targets[half].floor.push_back(kDarkest * pilot_means_[half][probe_of_point_[point] * channels() + c]);
-        const Missable missable = MissableAt(point, c, {half, half + 1});
+        const Missable missable = estimates[probe_of_point_[point]].MissableBy({half, half + 1}, point, c);
         targets[half].brightest.push_back(std::max(missable.seen, missable.share * missable.largest));
       }
     }
     const double samples = static_cast<double>(blocks_.blocks(point)) * PointSampler::kBlockSamples;
-    halves_[point].Offer(HalfEstimates(point), samples, targets);
+    halves_[point].Offer(halves[point], samples, targets);
   }
 }
 
 bool ProgressiveSampling::ConfirmDecisions() {
-  const ProbeMeans means = CurrentMeans();
+  const std::vector<PointValue> values = Values();
+  const ProbeMeans means = MeansOverProbes([&](std::size_t point) -> const auto& { return values[point].estimates; });
   bool confirmed = true;
   for (std::size_t point = 0; point < blocks_.points(); ++point) {
-    if (halves_[point].decided() && WorstError(point, Value(point), means) > *goal_.target_error)
+    if (halves_[point].decided() && WorstError(point, values[point], means) > *goal_.target_error)
       halves_[point].Reopen();
     confirmed = confirmed && halves_[point].decided();
   }
@@ -178,7 +181,7 @@ void ProgressiveSampling::PlanRound(Clock::Time now) {
 }
 
 void ProgressiveSampling::UpdateWorstError() {
-  const std::vector<PointValue> values = AllValues();
+  const std::vector<PointValue> values = Values();
   const ProbeMeans means = MeansOverProbes([&](std::size_t point) -> const auto& { return values[point].estimates; });
   double worst = 0;
   for (std::size_t point = 0; point < values.size(); ++point) {
@@ -199,14 +202,14 @@ double ProgressiveSampling::WorstError(std::size_t point, const PointValue& valu
   return worst;
 }
 
-template <typename Values>
-ProgressiveSampling::ProbeMeans ProgressiveSampling::MeansOverProbes(const Values& values) const {
+template <typename Estimates>
+ProgressiveSampling::ProbeMeans ProgressiveSampling::MeansOverProbes(const Estimates& estimates) const {
   ProbeMeans means(probe_ends_.size() * channels());
   std::size_t first = 0;
   for (std::size_t probe = 0; probe < probe_ends_.size(); ++probe) {
     for (std::size_t point = first; point < probe_ends_[probe]; ++point) {
-      const std::vector<MeanEstimate>& estimates = values(point);
-      for (std::size_t c = 0; c < channels(); ++c) means[probe * channels() + c] += estimates[c].mean;
+      const std::vector<MeanEstimate>& of_point = estimates(point);
+      for (std::size_t c = 0; c < channels(); ++c) means[probe * channels() + c] += of_point[c].mean;
     }
     const auto count = static_cast<double>(probe_ends_[probe] - first);
     for (std::size_t c = 0; c < channels(); ++c) means[probe * channels() + c] /= count;
@@ -215,126 +218,37 @@ ProgressiveSampling::ProbeMeans ProgressiveSampling::MeansOverProbes(const Value
   return means;
 }
 
-std::pair<std::size_t, std::size_t> ProgressiveSampling::Neighbours(std::size_t point) const {
-  const std::size_t probe = probe_of_point_[point];
-  return {std::max(probe == 0 ? 0 : probe_ends_[probe - 1], point - std::min(point, kNeighbours)),
-          std::min(probe_ends_[probe], point + kNeighbours + 1)};
+PointEstimates ProgressiveSampling::EstimatesOf(std::size_t probe) const {
+  return {blocks_, probe == 0 ? 0 : probe_ends_[probe - 1], probe_ends_[probe], !halves_.empty()};
 }
 
-NearbyVariance ProgressiveSampling::NearbyAt(std::size_t point, std::size_t channel) const {
-  NearbyVariances nearby;
-  const auto [begin, end] = Neighbours(point);
-  for (std::size_t p = begin; p < end; ++p) {
-    if (blocks_.blocks(p) == 0) continue;
-    nearby.Add(blocks_.ReplicateVariance(p, 0, channel), blocks_.ReplicateVariance(p, 1, channel));
-  }
-  return nearby.Result();
+std::array<CrossedHalves::HalfEstimate, 2> ProgressiveSampling::HalvesOf(std::size_t point,
+                                                                         const PointEstimates& estimates) const {
+  std::array<CrossedHalves::HalfEstimate, 2> halves;
+  for (std::size_t half = 0; half < 2; ++half)
+    for (std::size_t c = 0; c < channels(); ++c) halves[half].push_back(estimates.OfHalf(point, half, c));
+  return halves;
 }
 
-Missable ProgressiveSampling::MissableAt(std::size_t point, std::size_t channel, Halves halves) const {
-  const PointSampler::Doubt& doubt = blocks_.doubt(point, channel);
-  Missable missable;
-  missable.largest = doubt.step + doubt.brightest;
-  if (missable.largest == 0) return missable;
-  const auto [begin, end] = Neighbours(point);
-  double variance = 0;
-  double count = 0;
-  for (std::size_t p = begin; p < end; ++p) {
-    if (blocks_.blocks(p) == 0) continue;
-    ++count;
-    for (std::size_t half = halves.first; half < halves.last; ++half) {
-      missable.seen = std::max(missable.seen, blocks_.range(p, half, channel).Width());
-      variance += blocks_.SampleVariance(p, half, channel);
-    }
-  }
-  missable.seen = std::min(missable.seen, missable.largest);
-  missable.share = 1 / std::sqrt(count);
-  missable.variance = variance / (count * static_cast<double>(halves.count()));
-  return missable;
-}
-
-ProgressiveSampling::Misses ProgressiveSampling::MissesOf(std::size_t probe) const {
-  Misses misses;
-  if (!halves_.empty()) return misses;
-  misses.first = probe == 0 ? 0 : probe_ends_[probe - 1];
-  misses.at_points.resize((probe_ends_[probe] - misses.first) * channels());
-  for (std::size_t p = misses.first; p < probe_ends_[probe]; ++p) {
-    if (blocks_.blocks(p) == 0) continue;
-    for (std::size_t c = 0; c < channels(); ++c) {
-      const Missable missable = blocks_.OfMeans(p, MissableAt(p, c, {0, 2}));
-      if (missable.largest == 0) continue;
-      misses.at_points[(p - misses.first) * channels() + c].Add(blocks_.Replicates(p, c), missable.Event());
-    }
-  }
-  return misses;
-}
-
-std::optional<double> ProgressiveSampling::MissedAt(std::size_t point, std::size_t channel,
-                                                    const Misses& misses) const {
-  if (misses.at_points.empty()) return std::nullopt;
-  SharedMisses nearby;
-  const auto [begin, end] = Neighbours(point);
-  for (std::size_t p = begin; p < end; ++p) nearby.Add(misses.at_points[(p - misses.first) * channels() + channel]);
-  const Missable missable = blocks_.OfMeans(point, MissableAt(point, channel, {0, 2}));
-  std::optional<double> missed =
-      nearby.MeanSquare((nearby.any() ? missable.Event() : missable.largest) / kHalfReplicates);
-  if (!missed) return missed;
-  // A shadow's edge is met by a point that its neighbours know nothing of: any of them may be the one.
-  const double step = blocks_.doubt(point, channel).step / static_cast<double>(blocks_.blocks(point));
-  const double edge = missable.share * MostMissed(step, kReplicates);
-  return *missed + edge * edge;
-}
-
-CrossedHalves::HalfEstimate ProgressiveSampling::EstimateOf(std::size_t point, Halves halves,
-                                                            const Misses& misses) const {
-  CrossedHalves::HalfEstimate estimates;
-  for (std::size_t c = 0; c < channels(); ++c) {
-    // Where points stop by themselves each goes by its own: one among noisier ones would go on for their sake.
-    NearbyVariance nearby;
-    if (halves.count() == 2) {
-      nearby = NearbyAt(point, c);
-      nearby.missed = MissedAt(point, c, misses);
-    }
-    estimates.push_back(blocks_.Estimate(point, c, halves, MissableAt(point, c, halves), nearby));
-  }
-  return estimates;
-}
-
-std::array<CrossedHalves::HalfEstimate, 2> ProgressiveSampling::HalfEstimates(std::size_t point) const {
-  return {EstimateOf(point, {0, 1}, {}), EstimateOf(point, {1, 2}, {})};
-}
-
-ProgressiveSampling::ProbeMeans ProgressiveSampling::CurrentMeans() const {
-  const std::vector<PointValue> values = AllValues();
-  return MeansOverProbes([&](std::size_t point) -> const auto& { return values[point].estimates; });
-}
-
-std::vector<ProgressiveSampling::PointValue> ProgressiveSampling::AllValues() const {
-  std::vector<PointValue> values;
-  values.reserve(blocks_.points());
+std::vector<ProgressiveSampling::PointValue> ProgressiveSampling::Values() const {
+  std::vector<PointValue> values(blocks_.points());
+  std::size_t point = 0;
   for (std::size_t probe = 0; probe < probe_ends_.size(); ++probe) {
-    const Misses misses = MissesOf(probe);
-    while (values.size() < probe_ends_[probe]) values.push_back(Value(values.size(), misses));
+    const PointEstimates estimates = EstimatesOf(probe);
+    for (; point < probe_ends_[probe]; ++point) {
+      PointValue& value = values[point];
+      value.samples = static_cast<double>(blocks_.blocks(point)) * PointSampler::kBlockSamples;
+      if (value.samples == 0) continue;
+      if (halves_.empty()) {
+        for (std::size_t c = 0; c < channels(); ++c) value.estimates.push_back(estimates.Of(point, c));
+        continue;
+      }
+      const auto halves = HalvesOf(point, estimates);
+      for (std::size_t c = 0; c < channels(); ++c) value.estimates.push_back(halves_[point].Estimate(halves, c));
+      value.samples = halves_[point].Samples(value.samples);
+    }
   }
   return values;
-}
-
-ProgressiveSampling::PointValue ProgressiveSampling::Value(std::size_t point) const {
-  return Value(point, MissesOf(probe_of_point_[point]));
-}
-
-ProgressiveSampling::PointValue ProgressiveSampling::Value(std::size_t point, const Misses& misses) const {
-  PointValue value;
-  value.samples = static_cast<double>(blocks_.blocks(point)) * PointSampler::kBlockSamples;
-  if (value.samples == 0) return value;
-  if (halves_.empty()) {
-    value.estimates = EstimateOf(point, {0, 2}, misses);
-    return value;
-  }
-  const auto halves = HalfEstimates(point);
-  for (std::size_t c = 0; c < channels(); ++c) value.estimates.push_back(halves_[point].Estimate(halves, c));
-  value.samples = halves_[point].Samples(value.samples);
-  return value;
 }
 
 template <class Self, class Stream>

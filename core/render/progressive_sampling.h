@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "core/render/point_blocks.h"
+#include "core/render/point_estimates.h"
 #include "core/render/point_sampler.h"
 #include "core/render/rendering.h"
 #include "core/statistics/crossed_halves.h"
-#include "core/statistics/shared_misses.h"
 
 namespace flatlight {
 
@@ -54,9 +54,7 @@ class ProgressiveSampling {
     std::vector<MeanEstimate> estimates;
     double samples = 0;
   };
-  PointValue Value(std::size_t point) const;
-  // Of all points: less work than one by one.
-  std::vector<PointValue> AllValues() const;
+  std::vector<PointValue> Values() const;  // By point.
   std::size_t channels() const { return blocks_.channels(); }
   double rays() const { return blocks_.rays(); }
 
@@ -86,30 +84,14 @@ class ProgressiveSampling {
   // Sets the goals of the next round, or the reason why there is none.
   void PlanRound(Clock::Time now);
   void UpdateWorstError();
-  // values(point) gives one estimate a channel.
-  template <typename Values>
-  ProbeMeans MeansOverProbes(const Values& values) const;
-  ProbeMeans CurrentMeans() const;
+  // estimates(point) gives one a channel.
+  template <typename Estimates>
+  ProbeMeans MeansOverProbes(const Estimates& estimates) const;
   double WorstError(std::size_t point, const PointValue& value, const ProbeMeans& means) const;
-  using Halves = PointBlocks::Halves;
-
-  // What samples may have missed at the point, as its neighbours tell by the same halves of their replicates.
-  Missable MissableAt(std::size_t point, std::size_t channel, Halves halves) const;
-  NearbyVariance NearbyAt(std::size_t point, std::size_t channel) const;
-  // What replicates that agree miss together, by points of a probe, then channel. (Counts are equal but while a round
-  // is under way.) Empty where points stop by themselves: each goes by its own then.
-  struct Misses {
-    std::size_t first = 0;  // Of the probe's points.
-    std::vector<SharedMisses> at_points;
-  };
-  Misses MissesOf(std::size_t probe) const;
-  // What those of a point have to expect, as its neighbours tell.
-  std::optional<double> MissedAt(std::size_t point, std::size_t channel, const Misses& misses) const;
-  // The points [first, last) of the same probe that are near.
-  std::pair<std::size_t, std::size_t> Neighbours(std::size_t point) const;
-  CrossedHalves::HalfEstimate EstimateOf(std::size_t point, Halves halves, const Misses& misses) const;
-  PointValue Value(std::size_t point, const Misses& misses) const;
-  std::array<CrossedHalves::HalfEstimate, 2> HalfEstimates(std::size_t point) const;
+  // Of the points of a probe.
+  PointEstimates EstimatesOf(std::size_t probe) const;
+  // One estimate a channel of each half.
+  std::array<CrossedHalves::HalfEstimate, 2> HalvesOf(std::size_t point, const PointEstimates& estimates) const;
   bool Active(std::size_t point) const { return !goal_.target_error.has_value() || !halves_[point].decided(); }
 
   std::unique_ptr<const PointSampler> sampler_;

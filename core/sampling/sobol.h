@@ -9,6 +9,7 @@
 #ifndef FLATLIGHT_CORE_SAMPLING_SOBOL_H_
 #define FLATLIGHT_CORE_SAMPLING_SOBOL_H_
 
+#include <array>
 #include <bit>
 #include <cstdint>
 
@@ -37,6 +38,37 @@ constexpr std::uint32_t SobolSecondDimension(std::uint32_t index) {
   index ^= (index >> 4) & 0x0f0f0f0fu;
   index ^= (index >> 8) & 0x00ff00ffu;
   return index ^ (index >> 16);
+}
+
+// Eight copies of the sequence, each with its digits shifted (added modulo 2), that make up finer nets together: over
+// an aligned range of 2^k indices, for any k up to 29, all copies are one (0, k + 3, 2)-net. Digit t of a shift is a
+// linear form of the copy's three bits, c_t, the same one again every seven digits. In one dimension any three
+// successive forms that are independent will do: they tell copies apart at the first three digits that the indices
+// leave open. Of the sequences c_{t+3} = a c_t + b c_{t+1} + c c_{t+2} that have them, these two (c_{t+3} = c_t +
+// c_{t+1} and c_t + c_{t+2}) are nets in two dimensions as well; found by trial, and tested by the ranks of all their
+// matrices.
+inline constexpr std::uint32_t kSharedNets = 8;
+
+// The shifts of all copies, from their seven forms; most significant digit in bit 0.
+constexpr std::array<std::uint32_t, kSharedNets> SharedNetShifts(const std::array<std::uint8_t, 7>& forms) {
+  std::array<std::uint32_t, kSharedNets> shifts{};
+  for (std::uint32_t copy = 0; copy < kSharedNets; ++copy)
+    for (unsigned t = 0; t < 32; ++t)
+      shifts[copy] |= static_cast<std::uint32_t>(std::popcount(forms[t % 7] & copy) & 1) << t;
+  return shifts;
+}
+inline constexpr std::array<std::uint32_t, kSharedNets> kFirstShifts = SharedNetShifts({1, 2, 4, 3, 6, 7, 5});
+inline constexpr std::array<std::uint32_t, kSharedNets> kSecondShifts = SharedNetShifts({6, 4, 1, 7, 3, 2, 5});
+
+// Renames the copies: x -> a x + b in the field of 8 elements, a and b taken from the key. Any two copies come out as
+// any two alike likely, so that what they get of two numbers that are renamed independently is unrelated.
+constexpr std::uint32_t RenamedCopy(std::uint32_t copy, std::uint64_t key) {
+  constexpr std::array<std::uint8_t, 7> kPowers = {1, 2, 4, 3, 6, 7, 5};  // Of x, modulo x^3 + x + 1.
+  constexpr std::array<std::uint8_t, 8> kLogarithms = {0, 0, 1, 3, 2, 6, 4, 5};
+  const auto b = static_cast<std::uint32_t>(key & 7);
+  if (copy == 0) return b;
+  const auto a = static_cast<std::uint32_t>((key >> 32) * 7 >> 32);
+  return b ^ kPowers[(kLogarithms[copy] + a) % 7];
 }
 
 // Nested uniform scrambling of reversed digits. `key` must be well mixed. The sum and the products make each digit

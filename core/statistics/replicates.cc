@@ -8,16 +8,10 @@
 #include "core/statistics/shared_misses.h"
 
 namespace flatlight {
-namespace {
-
-// Values are sums over a path and a tree of blocks, each step correct to 2^-53: of the order of 32 steps count.
-constexpr double kRounding = 32 * 0x1p-53;
-
-}  // namespace
 
 double MeanEstimate::StandardError() const {
   const double spread = std::sqrt(variance * degrees_of_freedom / (degrees_of_freedom - 2) + unresolved * unresolved);
-  return std::max(spread, kRounding * std::abs(mean) + rounding);
+  return std::max(spread, kReplicateRounding * std::abs(mean) + rounding);
 }
 
 NearbyVariance NearbyVariances::Result() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Estimates from independently randomised replicates. Samples within a replicate are correlated (they are stratified);
-// the means of replicates are not, and they alone tell the error.
+// Estimates from randomised replicates. Samples within a replicate are correlated (they are stratified); the means of
+// replicates are not, and they alone tell the error. Where the replicates of each half share a sequence, the halves
+// alone are independent (see halves_ratio.h).
 #ifndef FLATLIGHT_CORE_STATISTICS_REPLICATES_H_
 #define FLATLIGHT_CORE_STATISTICS_REPLICATES_H_
 
@@ -15,6 +16,10 @@ namespace flatlight {
 
 inline constexpr std::size_t kReplicates = 16;
 inline constexpr std::size_t kHalfReplicates = kReplicates / 2;
+
+// Relative. Values are sums over a path and a tree of blocks, each step correct to 2^-53: of the order of 32 steps
+// count.
+inline constexpr double kReplicateRounding = 32 * 0x1p-53;
 
 // A mean and the variance of that mean, as estimated from `degrees_of_freedom` + 1 values.
 struct MeanEstimate {

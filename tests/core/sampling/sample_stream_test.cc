@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -50,6 +51,56 @@ TEST(SampleStreamTest, FirstPointsFillEveryElementaryInterval) {
   }
 }
 
+// Alone and all together: 2^k points of each of the eight members of a group are a net of 2^(k + 3).
+TEST(SampleStreamTest, MembersOfAGroupFillFinerIntervalsTogether) {
+  for (const std::uint64_t seed : {0u, 5u}) {
+    for (unsigned k = 0; k <= 9; ++k) {
+      for (const std::uint32_t first : {0u, 3u << k}) {
+        std::vector<SamplePair> points;
+        for (std::uint32_t member = 0; member < SampleStream::kMembers; ++member) {
+          const SampleStream stream = SampleStream::Member(seed, 2, 1, member);
+          for (std::uint32_t i = 0; i < (1u << k); ++i) points.push_back(stream.Pair(first + i, 4));
+        }
+        for (unsigned rows_log = 0; rows_log <= k + 3; ++rows_log) {
+          const std::size_t rows = std::size_t{1} << rows_log, columns = std::size_t{8} << k >> rows_log;
+          std::vector<int> hits(rows * columns);
+          for (const SamplePair& p : points) ++hits[Cell(p.u, columns) * rows + Cell(p.v, rows)];
+          for (const int n : hits) ASSERT_EQ(n, 1) << "2^" << k << " points of a member, " << rows << " rows";
+        }
+      }
+    }
+  }
+}
+
+// What holds for all k that indices of 32 bits leave room for: the digits that decide on an elementary interval, as
+// linear forms of the index's k bits and the member's three, are independent.
+TEST(SobolTest, SharedNetsHaveMatricesOfFullRank) {
+  for (unsigned k = 0; k <= 29; ++k) {
+    for (unsigned rows = 0; rows <= k + 3; ++rows) {
+      const unsigned columns = k + 3 - rows;
+      std::vector<std::uint64_t> digits;  // Of the two numbers: the columns of the matrix.
+      for (unsigned bit = 0; bit < k + 3; ++bit) {
+        const std::uint32_t index = bit < k ? 1u << bit : 0;
+        const std::uint32_t copy = bit < k ? 0 : 1u << (bit - k);
+        const std::uint64_t u = (index ^ kFirstShifts[copy]) & ((std::uint64_t{1} << columns) - 1);
+        const std::uint64_t v = (SobolSecondDimension(index) ^ kSecondShifts[copy]) & ((std::uint64_t{1} << rows) - 1);
+        digits.push_back(u << rows | v);
+      }
+      std::size_t rank = 0;
+      for (unsigned bit = 0; bit < 64; ++bit) {
+        const auto pivot = std::find_if(digits.begin() + static_cast<std::ptrdiff_t>(rank), digits.end(),
+                                        [&](std::uint64_t d) { return (d >> bit) & 1; });
+        if (pivot == digits.end()) continue;
+        std::iter_swap(digits.begin() + static_cast<std::ptrdiff_t>(rank), pivot);
+        for (std::size_t i = rank + 1; i < digits.size(); ++i)
+          if ((digits[i] >> bit) & 1) digits[i] ^= digits[rank];
+        ++rank;
+      }
+      ASSERT_EQ(rank, k + 3) << rows << " rows";
+    }
+  }
+}
+
 TEST(SampleStreamTest, LaterAlignedBlocksAreNetsToo) {
   const SampleStream stream(9, 0, 0);
   for (std::uint32_t block = 0; block < 20; ++block) {
@@ -74,6 +125,17 @@ TEST(SampleStreamTest, EachSampleIsUniformOverSeeds) {
   }
 }
 
+TEST(SampleStreamTest, EachSampleOfAMemberIsUniformOverSeeds) {
+  for (const std::uint32_t member : {1u, 6u}) {
+    std::vector<int> counts(16 * 16);
+    for (std::uint64_t seed = 0; seed < 100'000; ++seed) {
+      const SamplePair p = SampleStream::Member(seed, 3, 1, member).Pair(9, 2);
+      ++counts[Cell(p.u, 16) * 16 + Cell(p.v, 16)];
+    }
+    EXPECT_LT(NormalScore(ChiSquare(counts), 255), kScoreLimit) << member;
+  }
+}
+
 TEST(SampleStreamTest, LowDigitsAreUniformToo) {
   for (const unsigned shift : {20u, 32u, 45u}) {
     std::vector<int> counts(256);
@@ -87,17 +149,27 @@ TEST(SampleStreamTest, LowDigitsAreUniformToo) {
 }
 
 // What neighbours in any coordinate of the key give must be unrelated: pairs of numbers fill the square evenly.
-TEST(SampleStreamTest, ReplicatesPointsSeedsAndDimensionsAreIndependent) {
-  std::array<std::vector<int>, 5> counts;
+TEST(SampleStreamTest, ReplicatesGroupsPointsSeedsAndDimensionsAreIndependent) {
+  std::array<std::vector<int>, 8> counts;
   counts.fill(std::vector<int>(16 * 16));
   for (std::uint64_t n = 0; n < 60'000; ++n) {
     const auto index = static_cast<std::uint32_t>(n % 8);
-    const SampleStream stream(n, n % 3, 0);
+    const std::uint64_t point = n % 3;
+    const SampleStream stream(n, point, 0);
+    const SampleStream member = SampleStream::Member(n, point, 0, 3);
     const double u = stream.Pair(index, 0).u;
-    const std::array<double, 5> others = {
-        SampleStream(n + 1, n % 3, 0).Pair(index, 0).u, SampleStream(n, n % 3 + 1, 0).Pair(index, 0).u,
-        SampleStream(n, n % 3, 1).Pair(index, 0).u, stream.Pair(index, 1).u, stream.Single(index, 0)};
-    for (std::size_t k = 0; k < others.size(); ++k) ++counts[k][Cell(u, 16) * 16 + Cell(others[k], 16)];
+    const double u_of_member = member.Pair(index, 0).u;
+    const std::array<std::array<double, 2>, 8> pairs = {{
+        {u, SampleStream(n + 1, point, 0).Pair(index, 0).u},
+        {u, SampleStream(n, point + 1, 0).Pair(index, 0).u},
+        {u, SampleStream(n, point, 1).Pair(index, 0).u},
+        {u, stream.Pair(index, 1).u},
+        {u, stream.Single(index, 0)},
+        {u, u_of_member},
+        {u_of_member, SampleStream::Member(n, point, 1, 3).Pair(index, 0).u},
+        {member.Single(index, 0), SampleStream::Member(n, point, 0, 4).Single(index, 0)},
+    }};
+    for (std::size_t k = 0; k < pairs.size(); ++k) ++counts[k][Cell(pairs[k][0], 16) * 16 + Cell(pairs[k][1], 16)];
   }
   for (std::size_t k = 0; k < counts.size(); ++k) {
     EXPECT_LT(NormalScore(ChiSquare(counts[k]), 255), kScoreLimit) << k;
@@ -106,6 +178,23 @@ TEST(SampleStreamTest, ReplicatesPointsSeedsAndDimensionsAreIndependent) {
 
 // Owen's scrambling flips each digit by a coin of its own for every choice of the digits above it. Seven coins decide
 // the first three digits: all 128 outcomes must be equally frequent over keys.
+// Any two copies come out as any two, all alike likely: 56 outcomes.
+TEST(SobolTest, PairsOfCopiesAreRenamedEvenly) {
+  for (std::uint32_t first = 0; first < kSharedNets; ++first) {
+    for (std::uint32_t second = first + 1; second < kSharedNets; ++second) {
+      std::vector<int> counts(64);
+      for (std::uint64_t n = 0; n < 56'000; ++n) {
+        const std::uint64_t key = MixBits(n);
+        const std::uint32_t a = RenamedCopy(first, key), b = RenamedCopy(second, key);
+        ASSERT_NE(a, b);
+        ++counts[8 * a + b];
+      }
+      for (std::size_t i = 7; i < 8; --i) counts.erase(counts.begin() + static_cast<std::ptrdiff_t>(9 * i));
+      EXPECT_LT(NormalScore(ChiSquare(counts), 55), kScoreLimit) << first << ", " << second;
+    }
+  }
+}
+
 TEST(ScrambleTest, CoinsOfTheFirstThreeDigitsAreIndependent) {
   std::vector<int> counts(128);
   for (std::uint64_t n = 0; n < 200'000; ++n) {
