@@ -50,7 +50,7 @@ class SampleStream {
       second_shift = kSecondShifts[copy];
       // Within half of what its highest bit allows an index is shuffled for each member apart. Else its eight pairs
       // would be spread evenly over the first digits of every dimension, and the variance of what two dimensions do
-      // together would be 8/7 times as large.
+      // together would be 1.2 times as large.
       const std::uint32_t own = (std::uint32_t{1} << (std::max<unsigned>(std::bit_width(index), 2) - 2)) - 1;
       shuffled = (shuffled & ~own) | (Shuffled(index, MixBits(key ^ member_key_)) & own);
     }

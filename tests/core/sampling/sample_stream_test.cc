@@ -101,6 +101,26 @@ TEST(SobolTest, SharedNetsHaveMatricesOfFullRank) {
   }
 }
 
+// What two dimensions do together is as noisy for members of a group as for replicates that share nothing, which have
+// twice the variance of samples that are unrelated: two successive indices lie in other halves of both dimensions.
+// Would members share the order of their indices it were 1.2 times that, and 1.4 times with the same names in all
+// dimensions. 20,000 trials tell a variance to 1 %.
+TEST(SampleStreamTest, MembersAreUnrelatedAcrossDimensions) {
+  constexpr int kTrials = 20'000;
+  constexpr std::uint32_t kSamples = 64;
+  double squares = 0;
+  for (std::uint64_t seed = 0; seed < kTrials; ++seed) {
+    double sum = 0;
+    for (std::uint32_t member = 0; member < SampleStream::kMembers; ++member) {
+      const SampleStream stream = SampleStream::Member(seed, 0, 0, member);
+      for (std::uint32_t i = 0; i < kSamples; ++i)
+        sum += (stream.Pair(i, 0).u < 0.5) == (stream.Pair(i, 1).u < 0.5) ? 1 : -1;
+    }
+    squares += sum * sum / kTrials;
+  }
+  EXPECT_NEAR(squares / (2 * kSamples * SampleStream::kMembers), 1, 0.06);
+}
+
 TEST(SampleStreamTest, LaterAlignedBlocksAreNetsToo) {
   const SampleStream stream(9, 0, 0);
   for (std::uint32_t block = 0; block < 20; ++block) {
