@@ -29,7 +29,7 @@ PointEstimates::PointEstimates(const PointBlocks& blocks, std::size_t first, std
       if (estimate.variance > rounding * rounding)
         known.ratio.Add(HalvesRatios::SquaredError(values), estimate.variance);
       if (!alone_ && known.missable.largest > 0)
-        known.misses.Add(values, blocks_.OfMeans(point, known.missable).Event());
+        known.misses.Add(HalvesSpreadOf(values), blocks_.OfMeans(point, known.missable).Event());
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "core/render/onward_points.h"
@@ -13,6 +14,7 @@
 #include "core/render/state_stream.h"
 #include "core/render/world_units.h"
 #include "core/sampling/hash.h"
+#include "core/statistics/misses_in_row.h"
 
 namespace flatlight {
 namespace {
@@ -197,20 +199,18 @@ void RayTracingRendering::FinishPoint(std::size_t point, const Gathered* gathere
   for (std::size_t r = 0; r < kReplicates; ++r) steepest = std::max(steepest, gathered[r].steepest);
   // What one ray more on the brightest thing changes, there where the nearest is.
   const double step = brightest_ * 2.0 / pass_rays_;
-  const std::array<double, kQuantities> steps = {step, 2 * step * steepest, 6 * step * steepest * steepest, step};
+  estimate.step = {step, 2 * step * steepest, 6 * step * steepest * steepest, step};
   // Of light within an angle of the horizon irradiance has half the square, rotation the angle itself.
   const double missed = brightest_ * missed_[point];
-  const std::array<double, kQuantities> misses = {missed, 2 * missed * steepest, 6 * missed * steepest * steepest,
-                                                  brightest_ * std::sqrt(missed_[point])};
+  estimate.rounding = {missed, 2 * missed * steepest, 6 * missed * steepest * steepest,
+                       brightest_ * std::sqrt(missed_[point])};
   std::array<double, kReplicates> values;
   for (std::size_t order = 0; order < kQuantities; ++order) {
     if (!Computes(static_cast<int>(order))) continue;
     for (int c = 0; c < kMaxChannels; ++c) {
       for (std::size_t r = 0; r < kReplicates; ++r) values[r] = gathered[r].value[order][c];
-      MeanEstimate mean = EstimateMean(values, steps[order]);
-      mean.rounding = misses[order];
-      estimate.value[order][c] = mean.mean;
-      estimate.error[order][c] = mean.StandardError();
+      estimate.spread[order][c] = HalvesSpreadOf(values);
+      estimate.value[order][c] = estimate.spread[order][c].All().mean;
     }
   }
   if (!lights_) return;
@@ -238,12 +238,43 @@ std::vector<Spectrum> RayTracingRendering::MeansOverProbes() const {
   return means;
 }
 
-double RayTracingRendering::RelativeErrorAt(std::size_t point, const std::vector<Spectrum>& means) const {
+std::vector<Spectrum> RayTracingRendering::Errors(std::size_t quantity) const {
+  std::vector<Spectrum> errors(estimates_.size());
+  std::vector<std::optional<RowPoint>> row(estimates_.size());
+  for (int c = 0; c < scene_->channels(); ++c) {
+    for (std::size_t point = 0; point < row.size(); ++point) {
+      const Estimate& estimate = estimates_[point];
+      row[point].reset();
+      // Events of other numbers of rays have other sizes. Derivatives by strata are not quite unbiased, and halves of
+      // the replicates do not tell a bias that both have: there the doubt stays as large as it may be.
+      if (quantity == 0 && estimate.rays == pass_rays_)
+        row[point] = {estimate.spread[quantity][c], estimate.step[quantity]};
+    }
+    std::size_t first = 0;
+    for (const Probe& probe : scene_->probes()) {
+      const MissesInRow misses({row.data() + first, probe.receivers.size()});
+      for (std::size_t i = 0; i < probe.receivers.size(); ++i) {
+        const Estimate& estimate = estimates_[first + i];
+        if (estimate.rays == 0) continue;
+        MeanEstimate mean = row[first + i] ? misses.Estimate(i)
+                                           : EstimateMean(estimate.spread[quantity][c].All(),
+                                                          Missable{estimate.step[quantity], estimate.step[quantity]});
+        mean.rounding = estimate.rounding[quantity];
+        errors[first + i][c] = mean.StandardError();
+      }
+      first += probe.receivers.size();
+    }
+  }
+  return errors;
+}
+
+double RayTracingRendering::RelativeErrorAt(std::size_t point, const Spectrum& error,
+                                            const std::vector<Spectrum>& means) const {
   double worst = 0;
   const Estimate& estimate = estimates_[point];
   for (int c = 0; c < kMaxChannels; ++c) {
     const double floor = kDarkest * means[probe_of_point_[point]][c];
-    worst = std::max(worst, RelativeError(estimate.value[0][c], estimate.error[0][c], floor));
+    worst = std::max(worst, RelativeError(estimate.value[0][c], error[c], floor));
   }
   return worst;
 }
@@ -251,10 +282,11 @@ double RayTracingRendering::RelativeErrorAt(std::size_t point, const std::vector
 // After each pass.
 void RayTracingRendering::PlanPass(Clock::Time now) {
   const std::vector<Spectrum> means = MeansOverProbes();
+  const std::vector<Spectrum> errors = Errors(0);
   worst_error_ = 0;
   bool all_final = true;
   for (std::size_t point = 0; point < points_.size(); ++point) {
-    const double error = RelativeErrorAt(point, means);
+    const double error = RelativeErrorAt(point, errors[point], means);
     worst_error_ = std::max(*worst_error_, error);
     if (!settings_.target_error || decisions_[point] == Decision::kFinal) continue;
     const bool met = error <= *settings_.target_error;
@@ -333,6 +365,9 @@ std::shared_ptr<const Field> RayTracingRendering::Snapshot() const {
   auto field = std::make_shared<Field>();
   field->rays = rays_;
   const WorldUnits units(scene_->frame());
+  std::array<std::vector<Spectrum>, kQuantities> errors;
+  for (std::size_t order = 0; order < kQuantities; ++order)
+    if (Computes(static_cast<int>(order))) errors[order] = Errors(order);
   std::size_t point = 0;
   for (const Probe& probe : scene_->probes()) {
     ProbeField& values = field->probes.emplace_back();
@@ -350,7 +385,7 @@ std::shared_ptr<const Field> RayTracingRendering::Snapshot() const {
           value[order]->push_back(unit[order] * estimate.value[order][c]);
           // Rays meet the arcs that follow Béziers: where there is hardly any noise, that counts.
           const double followed = order == 0 ? scene_->bezier_distance() * estimate.value[0][c] : 0;
-          error[order]->push_back(unit[order] * (estimate.error[order][c] + followed));
+          error[order]->push_back(unit[order] * (errors[order][point][c] + followed));
         }
       }
     }

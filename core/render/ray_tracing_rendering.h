@@ -43,12 +43,15 @@ class RayTracingRendering final : public Rendering {
   // Rotation comes with the gradient.
   bool Computes(int quantity) const { return quantity == kRotation ? orders_ > 1 : quantity < orders_; }
   struct Estimate {
-    std::array<Spectrum, kQuantities> value, error;
+    std::array<Spectrum, kQuantities> value;
+    std::array<std::array<HalvesSpread, kMaxChannels>, kQuantities> spread;  // Of replicates.
+    std::array<double, kQuantities> step = {};                               // The most that a replicate may miss.
+    std::array<double, kQuantities> rounding = {};
     std::uint32_t rays = 0;  // Of a replicate's gather; 0: there is none yet.
 
     template <class Self, class Stream>
     static void State(Self& self, Stream& stream) {
-      stream(self.value, self.error, self.rays);
+      stream(self.value, self.spread, self.step, self.rounding, self.rays);
     }
   };
   // What one gather gives.
@@ -75,7 +78,9 @@ class RayTracingRendering final : public Rendering {
   void AddChained(const Receiver& receiver, const std::vector<ChainedLight>& ways,
                   std::array<Spectrum, kQuantities>& value) const;
   void FinishPoint(std::size_t point, const Gathered* gathered);
-  double RelativeErrorAt(std::size_t point, const std::vector<Spectrum>& means) const;
+  // Standard errors of one quantity at all points. Where replicates agree on irradiance neighbours tell what they miss.
+  std::vector<Spectrum> Errors(std::size_t quantity) const;
+  double RelativeErrorAt(std::size_t point, const Spectrum& error, const std::vector<Spectrum>& means) const;
   std::vector<Spectrum> MeansOverProbes() const;
 
   std::shared_ptr<const Scene> scene_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/check.h"
 #include "core/statistics/shared_misses.h"
 
 namespace flatlight {
@@ -24,14 +25,32 @@ NearbyVariance NearbyVariances::Result() const {
   return {(mean_a + mean_b) / 2, common / (common + noise)};
 }
 
-MeanEstimate EstimateMean(std::span<const double> values, const Missable& missable, const NearbyVariance& nearby) {
-  const auto n = static_cast<double>(values.size());
+Spread SpreadOf(std::span<const double> values) {
+  Spread spread;
+  spread.count = static_cast<double>(values.size());
   double sum = 0;
   for (const double x : values) sum += x;
+  spread.mean = sum / spread.count;
+  for (const double x : values) spread.squares += (x - spread.mean) * (x - spread.mean);
+  return spread;
+}
+
+Spread HalvesSpread::All() const {
+  const double off = first.mean - second.mean;
+  return {2 * first.count, (first.mean + second.mean) / 2,
+          first.squares + second.squares + first.count * off * off / 2};
+}
+
+HalvesSpread HalvesSpreadOf(std::span<const double> values) {
+  FLATLIGHT_DCHECK(values.size() % 2 == 0);
+  return {SpreadOf(values.first(values.size() / 2)), SpreadOf(values.last(values.size() / 2))};
+}
+
+MeanEstimate EstimateMean(const Spread& spread, const Missable& missable, const NearbyVariance& nearby) {
+  const double n = spread.count;
+  const double squares = spread.squares;
   MeanEstimate estimate;
-  estimate.mean = sum / n;
-  double squares = 0;
-  for (const double x : values) squares += (x - estimate.mean) * (x - estimate.mean);
+  estimate.mean = spread.mean;
   // What cannot miss anything is not like its neighbours.
   const double share = missable.largest > 0 ? nearby.share : 1;
   const double others = nearby.mean / n;

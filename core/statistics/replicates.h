@@ -39,6 +39,32 @@ struct MeanEstimate {
   }
 };
 
+// Some values: how many, their mean, and the sum of squared distances from it.
+struct Spread {
+  double count = 0;
+  double mean = 0;
+  double squares = 0;
+
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.count, self.mean, self.squares);
+  }
+};
+Spread SpreadOf(std::span<const double> values);
+
+// An even number of values as two halves: all that errors are told by.
+struct HalvesSpread {
+  Spread first, second;
+
+  Spread All() const;
+
+  template <class Self, class Stream>
+  static void State(Self& self, Stream& stream) {
+    stream(self.first, self.second);
+  }
+};
+HalvesSpread HalvesSpreadOf(std::span<const double> values);
+
 // An event that values may all have missed: a sample that falls to the other side of an edge, or on something bright.
 struct Missable {
   double seen = 0;     // By how much one that was met nearby would change a value.
@@ -85,7 +111,11 @@ class NearbyVariances {
 // 2/((n + 2)(n + 3)) (Laplace's rule of succession), and the doubt that follows is added: that of the largest event,
 // less where samples nearby tell of rarer or smaller ones, or what alike points tell of those whose values agree. If
 // some values have met it, their spread tells.
-MeanEstimate EstimateMean(std::span<const double> values, const Missable& missable, const NearbyVariance& nearby = {});
+MeanEstimate EstimateMean(const Spread& spread, const Missable& missable, const NearbyVariance& nearby = {});
+inline MeanEstimate EstimateMean(std::span<const double> values, const Missable& missable,
+                                 const NearbyVariance& nearby = {}) {
+  return EstimateMean(SpreadOf(values), missable, nearby);
+}
 
 // The same, where nothing is known from nearby of an event that changes a value by `step`.
 inline MeanEstimate EstimateMean(std::span<const double> values, double step) {

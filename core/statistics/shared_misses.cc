@@ -9,19 +9,10 @@
 
 namespace flatlight {
 
-void SharedMisses::Add(std::span<const double> values, double event) {
-  FLATLIGHT_DCHECK(values.size() >= 4 && values.size() % 2 == 0);
-  struct Half {
-    double mean = 0, squares = 0;
-  };
-  const std::size_t size = values.size() / 2;
-  const auto n = static_cast<double>(size);
-  std::array<Half, 2> halves;
-  for (std::size_t h = 0; h < 2; ++h) {
-    const std::span<const double> own = values.subspan(h * size, size);
-    for (const double x : own) halves[h].mean += x / n;
-    for (const double x : own) halves[h].squares += (x - halves[h].mean) * (x - halves[h].mean);
-  }
+void SharedMisses::Add(const HalvesSpread& values, double event) {
+  const std::array<Spread, 2> halves = {values.first, values.second};
+  const double n = values.first.count;
+  FLATLIGHT_DCHECK(n >= 2 && values.second.count == n);
   const double off = halves[0].mean - halves[1].mean;
   const double variances = (halves[0].squares + halves[1].squares) / (n * (n - 1));
   for (std::size_t h = 0; h < 2; ++h) {

@@ -4,7 +4,8 @@
 
 #include <cmath>
 #include <optional>
-#include <span>
+
+#include "core/statistics/replicates.h"
 
 namespace flatlight {
 
@@ -22,8 +23,8 @@ inline double MostMissed(double largest, double n) { return largest * std::sqrt(
 // (All values agree less often than half of them, and are off by less then: errors come out somewhat too large.)
 class SharedMisses {
  public:
-  // The values of a point, an even number, of which each tells of the same mean; `event` as of Agree.
-  void Add(std::span<const double> values, double event);
+  // The values of a point, of which each tells of the same mean; `event` as of Agree.
+  void Add(const HalvesSpread& values, double event);
   // The points of another one.
   void Add(const SharedMisses& other);
   // Whether halves that met an event which the other one did not are higher for it on the whole, as they are where

@@ -30,7 +30,7 @@ TEST(SharedMissesTest, PointsThatMissedBrightValuesKnowOfThemFromOthers) {
   constexpr int kTrials = 500;
   for (int i = 0; i < kTrials; ++i) {
     SharedMisses misses;
-    for (int p = 0; p < kPoints; ++p) misses.Add(RareValues(random, 1 / 30.0), kBright);
+    for (int p = 0; p < kPoints; ++p) misses.Add(HalvesSpreadOf(RareValues(random, 1 / 30.0)), kBright);
     ASSERT_TRUE(misses.any());
     mean_square += *misses.MeanSquare(kBright / kHalfReplicates) / kTrials;
   }
@@ -42,8 +42,8 @@ TEST(SharedMissesTest, PointsThatMissedBrightValuesKnowOfThemFromOthers) {
 TEST(SharedMissesTest, WhatNoValueMetIsAsRareAsPointsAreMany) {
   std::mt19937_64 random(2);
   SharedMisses few, many;
-  for (int p = 0; p < 3; ++p) few.Add(RareValues(random, 0), kBright);
-  for (int p = 0; p < kPoints; ++p) many.Add(RareValues(random, 0), kBright);
+  for (int p = 0; p < 3; ++p) few.Add(HalvesSpreadOf(RareValues(random, 0)), kBright);
+  for (int p = 0; p < kPoints; ++p) many.Add(HalvesSpreadOf(RareValues(random, 0)), kBright);
   EXPECT_FALSE(many.any());
   EXPECT_NEAR(std::sqrt(*few.MeanSquare(1)), std::sqrt(2) / 3, 1e-12);
   EXPECT_NEAR(std::sqrt(*many.MeanSquare(1)), std::sqrt(2) / kPoints, 1e-12);
@@ -54,8 +54,8 @@ TEST(SharedMissesTest, PointsTogetherAreThoseOfEither) {
   SharedMisses all, first, second;
   for (int p = 0; p < kPoints; ++p) {
     const Values values = RareValues(random, 0.05);
-    all.Add(values, kBright);
-    (p < 10 ? first : second).Add(values, kBright);
+    all.Add(HalvesSpreadOf(values), kBright);
+    (p < 10 ? first : second).Add(HalvesSpreadOf(values), kBright);
   }
   first.Add(second);
   EXPECT_NEAR(*first.MeanSquare(1), *all.MeanSquare(1), 1e-12);
@@ -64,7 +64,7 @@ TEST(SharedMissesTest, PointsTogetherAreThoseOfEither) {
 TEST(SharedMissesTest, ValuesThatAllMeetEventsTellNothing) {
   std::mt19937_64 random(4);
   SharedMisses misses;
-  for (int p = 0; p < kPoints; ++p) misses.Add(RareValues(random, 0.5), 0.01);
+  for (int p = 0; p < kPoints; ++p) misses.Add(HalvesSpreadOf(RareValues(random, 0.5)), 0.01);
   EXPECT_FALSE(misses.MeanSquare(1).has_value());
 }
 
