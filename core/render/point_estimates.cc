@@ -2,13 +2,13 @@
 #include "core/render/point_estimates.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 namespace flatlight {
 namespace {
 
-// Bright samples are looked for at so many points on either side: they get light in much the same ways.
-constexpr std::size_t kNeighbours = 16;
 // What sharing sequences gains takes more of them to tell, and differs less.
 constexpr std::size_t kRatioNeighbours = 32;
 constexpr PointBlocks::Halves kBoth{0, 2};
@@ -27,28 +27,41 @@ PointEstimates::PointEstimates(const PointBlocks& blocks, std::size_t first, std
       const MeanEstimate estimate = blocks_.Estimate(point, c, kBoth, known.missable, known.nearby);
       const double rounding = kReplicateRounding * estimate.mean;
       if (estimate.variance > rounding * rounding)
-        known.ratio.Add(HalvesRatios::SquaredError(values), estimate.variance);
-      if (!alone_ && known.missable.largest > 0)
-        known.misses.Add(HalvesSpreadOf(values), blocks_.OfMeans(point, known.missable).Event());
+        known.own_ratio.Add(HalvesRatios::SquaredError(values), estimate.variance);
     }
+  }
+  for (std::size_t point = first_; point < last_; ++point)
+    for (std::size_t c = 0; c < blocks_.channels(); ++c) At(point, c).ratio = RatioOf(point, c);
+  if (alone_) return;
+  for (std::size_t c = 0; c < blocks_.channels(); ++c) {
+    std::vector<std::optional<RowPoint>> row(last_ - first_);
+    for (std::size_t point = first_; point < last_; ++point) {
+      if (blocks_.blocks(point) == 0) continue;
+      const Known& known = At(point, c);
+      row[point - first_] = {HalvesSpreadOf(blocks_.Replicates(point, c)), blocks_.OfMeans(point, known.missable),
+                             blocks_.doubt(point, c).step / static_cast<double>(blocks_.blocks(point)),
+                             known.ratio.ratio};
+    }
+    misses_.emplace_back(std::move(row));
   }
 }
 
 MeanEstimate PointEstimates::Of(std::size_t point, std::size_t channel) const {
   const Known& known = At(point, channel);
   NearbyVariance nearby = known.nearby;
-  nearby.missed = MissedBy(point, channel);
-  return RatioOf(point, channel).Of(blocks_.Estimate(point, channel, kBoth, known.missable, nearby));
+  nearby.missed = misses_[channel].At(point - first_);
+  return known.ratio.Of(blocks_.Estimate(point, channel, kBoth, known.missable, nearby));
 }
 
 MeanEstimate PointEstimates::OfHalf(std::size_t point, std::size_t half, std::size_t channel) const {
   const PointBlocks::Halves halves{half, half + 1};
-  return RatioOf(point, channel)
-      .Of(blocks_.Estimate(point, channel, halves, MissableBy(halves, point, channel), NearbyVariance()));
+  return At(point, channel)
+      .ratio.Of(blocks_.Estimate(point, channel, halves, MissableBy(halves, point, channel), NearbyVariance()));
 }
 
 std::pair<std::size_t, std::size_t> PointEstimates::Neighbours(std::size_t point, std::size_t reach) const {
-  return {std::max(first_, point - std::min(point, reach)), std::min(last_, point + reach + 1)};
+  const auto [begin, end] = NeighboursInRow(point - first_, last_ - first_, reach);
+  return {first_ + begin, first_ + end};
 }
 
 NearbyVariance PointEstimates::NearbyOf(std::size_t point, std::size_t channel) const {
@@ -65,7 +78,7 @@ VarianceRatio PointEstimates::RatioOf(std::size_t point, std::size_t channel) co
   HalvesRatios ratios;
   const auto [begin, end] = Neighbours(point, kRatioNeighbours);
   for (std::size_t p = begin; p < end; ++p)
-    if (!(alone_ && p == point)) ratios.Add(At(p, channel).ratio);
+    if (!(alone_ && p == point)) ratios.Add(At(p, channel).own_ratio);
   return ratios.Result();
 }
 
@@ -89,20 +102,6 @@ Missable PointEstimates::MissableBy(PointBlocks::Halves halves, std::size_t poin
   missable.share = 1 / std::sqrt(count);
   missable.variance = variance / (count * static_cast<double>(halves.count()));
   return missable;
-}
-
-std::optional<double> PointEstimates::MissedBy(std::size_t point, std::size_t channel) const {
-  SharedMisses misses;
-  const auto [begin, end] = Neighbours(point, kNeighbours);
-  for (std::size_t p = begin; p < end; ++p) misses.Add(At(p, channel).misses);
-  const Missable missable = blocks_.OfMeans(point, At(point, channel).missable);
-  std::optional<double> missed =
-      misses.MeanSquare((misses.any() ? missable.Event() : missable.largest) / kHalfReplicates);
-  if (!missed) return missed;
-  // A shadow's edge is met by a point that its neighbours know nothing of: any of them may be the one.
-  const double step = blocks_.doubt(point, channel).step / static_cast<double>(blocks_.blocks(point));
-  const double edge = missable.share * MostMissed(step, kReplicates);
-  return *missed + edge * edge;
 }
 
 }  // namespace flatlight

@@ -2,16 +2,14 @@
 #ifndef FLATLIGHT_CORE_RENDER_POINT_ESTIMATES_H_
 #define FLATLIGHT_CORE_RENDER_POINT_ESTIMATES_H_
 
-#include <array>
 #include <cstddef>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/render/point_blocks.h"
 #include "core/statistics/halves_ratio.h"
+#include "core/statistics/misses_in_row.h"
 #include "core/statistics/replicates.h"
-#include "core/statistics/shared_misses.h"
 
 namespace flatlight {
 
@@ -20,7 +18,8 @@ namespace flatlight {
 class PointEstimates {
  public:
   // Of the points [first, last). Alone: where points stop by themselves each goes by its own spread, as one among
-  // noisier ones would go on for their sake, and each half by its own samples. The blocks must outlive this.
+  // noisier ones would go on for their sake, and each half by its own samples; neighbours tell it no more than what
+  // sharing sequences gains, and which samples are rare. The blocks must outlive this.
   PointEstimates(const PointBlocks& blocks, std::size_t first, std::size_t last, bool alone);
 
   // Of a point that has blocks.
@@ -35,8 +34,8 @@ class PointEstimates {
   struct Known {
     Missable missable;
     NearbyVariance nearby;
-    HalvesRatios ratio;   // Its own.
-    SharedMisses misses;  // What its replicates miss together when they agree.
+    HalvesRatios own_ratio;
+    VarianceRatio ratio;  // As neighbours tell, and the point unless it is alone.
   };
   Known& At(std::size_t point, std::size_t channel) { return known_[(point - first_) * blocks_.channels() + channel]; }
   const Known& At(std::size_t point, std::size_t channel) const {
@@ -44,17 +43,15 @@ class PointEstimates {
   }
 
   NearbyVariance NearbyOf(std::size_t point, std::size_t channel) const;
-  // What sharing sequences within halves gains: as neighbours tell, and the point unless it is alone.
   VarianceRatio RatioOf(std::size_t point, std::size_t channel) const;
-  // Mean square of what replicates that agree have to expect, as neighbours tell.
-  std::optional<double> MissedBy(std::size_t point, std::size_t channel) const;
   // The points that are near: up to `reach` on either side.
   std::pair<std::size_t, std::size_t> Neighbours(std::size_t point, std::size_t reach) const;
 
   const PointBlocks& blocks_;
   std::size_t first_, last_;
   bool alone_;
-  std::vector<Known> known_;  // Point, then channel.
+  std::vector<Known> known_;         // Point, then channel.
+  std::vector<MissesInRow> misses_;  // By channel; empty if points are alone.
 };
 
 }  // namespace flatlight

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "core/render/onward_points.h"
@@ -211,6 +210,9 @@ void RayTracingRendering::FinishPoint(std::size_t point, const Gathered* gathere
       for (std::size_t r = 0; r < kReplicates; ++r) values[r] = gathered[r].value[order][c];
       estimate.spread[order][c] = HalvesSpreadOf(values);
       estimate.value[order][c] = estimate.spread[order][c].All().mean;
+      if (order > 0) continue;
+      const auto [least, most] = std::minmax_element(values.begin(), values.end());
+      estimate.range[c] = *most - *least;
     }
   }
   if (!lights_) return;
@@ -239,30 +241,58 @@ std::vector<Spectrum> RayTracingRendering::MeansOverProbes() const {
 }
 
 std::vector<Spectrum> RayTracingRendering::Errors(std::size_t quantity) const {
+  if (quantity == 0) return IrradianceErrors();
   std::vector<Spectrum> errors(estimates_.size());
-  std::vector<std::optional<RowPoint>> row(estimates_.size());
-  for (int c = 0; c < scene_->channels(); ++c) {
-    for (std::size_t point = 0; point < row.size(); ++point) {
-      const Estimate& estimate = estimates_[point];
-      row[point].reset();
-      // Events of other numbers of rays have other sizes. Derivatives by strata are not quite unbiased, and halves of
-      // the replicates do not tell a bias that both have: there the doubt stays as large as it may be.
-      if (quantity == 0 && estimate.rays == pass_rays_)
-        row[point] = {estimate.spread[quantity][c], estimate.step[quantity]};
+  for (std::size_t point = 0; point < errors.size(); ++point) {
+    const Estimate& estimate = estimates_[point];
+    const Missable missable{estimate.step[quantity], estimate.step[quantity]};
+    for (int c = 0; c < scene_->channels(); ++c) {
+      if (estimate.spread[quantity][c].first.count == 0) continue;
+      MeanEstimate mean = EstimateMean(estimate.spread[quantity][c].All(), missable);
+      mean.rounding = estimate.rounding[quantity];
+      errors[point][c] = mean.StandardError();
     }
+  }
+  return errors;
+}
+
+std::vector<Spectrum> RayTracingRendering::IrradianceErrors() const {
+  std::vector<Spectrum> errors(estimates_.size());
+  for (std::size_t point = 0; point < errors.size(); ++point)
+    errors[point] = estimates_[point].error.value_or(Spectrum());
+  for (int c = 0; c < scene_->channels(); ++c) {
     std::size_t first = 0;
     for (const Probe& probe : scene_->probes()) {
-      const MissesInRow misses({row.data() + first, probe.receivers.size()});
-      for (std::size_t i = 0; i < probe.receivers.size(); ++i) {
+      const std::size_t size = probe.receivers.size();
+      std::vector<std::optional<RowPoint>> row(size);
+      for (std::size_t i = 0; i < size; ++i) {
         const Estimate& estimate = estimates_[first + i];
-        if (estimate.rays == 0) continue;
-        MeanEstimate mean = row[first + i] ? misses.Estimate(i)
-                                           : EstimateMean(estimate.spread[quantity][c].All(),
-                                                          Missable{estimate.step[quantity], estimate.step[quantity]});
-        mean.rounding = estimate.rounding[quantity];
+        if (estimate.error || estimate.spread[0][c].first.count == 0) continue;
+        row[i] = {estimate.spread[0][c], {0, estimate.step[0]}, estimate.step[0]};
+      }
+      for (std::size_t i = 0; i < size; ++i) {
+        if (!row[i]) continue;
+        const auto [begin, end] = NeighboursInRow(i, size, kNeighbours);
+        double count = 0;
+        Missable& missable = row[i]->missable;
+        for (std::size_t p = begin; p < end; ++p) {
+          if (!row[p]) continue;
+          ++count;
+          missable.seen = std::max(missable.seen, estimates_[first + p].range[c]);
+        }
+        missable.seen = std::min(missable.seen, missable.largest);
+        missable.share = 1 / std::sqrt(count);
+      }
+      const MissesInRow misses(row);
+      for (std::size_t i = 0; i < size; ++i) {
+        if (!row[i]) continue;
+        NearbyVariance nearby;
+        nearby.missed = misses.At(i);
+        MeanEstimate mean = EstimateMean(row[i]->spread.All(), row[i]->missable, nearby);
+        mean.rounding = estimates_[first + i].rounding[0];
         errors[first + i][c] = mean.StandardError();
       }
-      first += probe.receivers.size();
+      first += size;
     }
   }
   return errors;
@@ -282,7 +312,8 @@ double RayTracingRendering::RelativeErrorAt(std::size_t point, const Spectrum& e
 // After each pass.
 void RayTracingRendering::PlanPass(Clock::Time now) {
   const std::vector<Spectrum> means = MeansOverProbes();
-  const std::vector<Spectrum> errors = Errors(0);
+  const std::vector<Spectrum> errors = IrradianceErrors();
+  for (std::size_t point = 0; point < points_.size(); ++point) estimates_[point].error = errors[point];
   worst_error_ = 0;
   bool all_final = true;
   for (std::size_t point = 0; point < points_.size(); ++point) {

@@ -47,11 +47,13 @@ class RayTracingRendering final : public Rendering {
     std::array<std::array<HalvesSpread, kMaxChannels>, kQuantities> spread;  // Of replicates.
     std::array<double, kQuantities> step = {};                               // The most that a replicate may miss.
     std::array<double, kQuantities> rounding = {};
-    std::uint32_t rays = 0;  // Of a replicate's gather; 0: there is none yet.
+    std::array<double, kMaxChannels> range = {};  // Of the replicates' irradiance.
+    std::optional<Spectrum> error;                // Of irradiance, once the pass was over.
+    std::uint32_t rays = 0;                       // Of a replicate's gather; 0: there is none yet.
 
     template <class Self, class Stream>
     static void State(Self& self, Stream& stream) {
-      stream(self.value, self.spread, self.step, self.rounding, self.rays);
+      stream(self.value, self.spread, self.step, self.rounding, self.range, self.error, self.rays);
     }
   };
   // What one gather gives.
@@ -78,7 +80,11 @@ class RayTracingRendering final : public Rendering {
   void AddChained(const Receiver& receiver, const std::vector<ChainedLight>& ways,
                   std::array<Spectrum, kQuantities>& value) const;
   void FinishPoint(std::size_t point, const Gathered* gathered);
-  // Standard errors of one quantity at all points. Where replicates agree on irradiance neighbours tell what they miss.
+  // Standard errors of irradiance at all points: where replicates agree neighbours of the same pass tell what they
+  // miss.
+  std::vector<Spectrum> IrradianceErrors() const;
+  // The same of any quantity. Derivatives by strata are not quite unbiased, and halves of the replicates do not tell a
+  // bias that both have: there the doubt stays as large as it may be.
   std::vector<Spectrum> Errors(std::size_t quantity) const;
   double RelativeErrorAt(std::size_t point, const Spectrum& error, const std::vector<Spectrum>& means) const;
   std::vector<Spectrum> MeansOverProbes() const;

@@ -22,8 +22,8 @@ struct SamplePair {
 // interval of area 2^-k holds one point. Different dimensions, replicates, points and seeds are scrambled
 // independently; a single number of a stream is uniform. Padded pairs after Burley 2020.
 //
-// The members of a group share one sequence: each of them is such a net, and over the indices 0 ... 2^k - 1, and again
-// over the next 2^(k-1), all eight together are one net. What members give is not independent, groups are.
+// The members of a group share one sequence: each of them is such a net, and over the indices 0 ... 2^k - 1, and over
+// either half of the next 2^k, all eight together are one net. What members give is not independent, groups are.
 class SampleStream {
  public:
   static constexpr std::uint32_t kMembers = kSharedNets;

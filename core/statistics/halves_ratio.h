@@ -31,7 +31,7 @@ class HalvesRatios {
   // of 0 or of rounding.
   void Add(double squared_error, double variance) { ++points_, sum_ += squared_error / variance; }
   void Add(const HalvesRatios& other) { points_ += other.points_, sum_ += other.sum_; }
-  // Draws the mean of few points towards 1, which it is at most but for noise.
+  // Draws the mean of few points towards 1.
   VarianceRatio Result() const;
 
  private:

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,26 +12,31 @@
 
 namespace flatlight {
 
-// A point of a row: its values, and the most by which an event that they may have missed would change one of them.
+// So many points on either side get light in much the same ways.
+inline constexpr std::size_t kNeighbours = 16;
+
+// The points [first, last) of a row of `points` that are near: up to `reach` on either side.
+std::pair<std::size_t, std::size_t> NeighboursInRow(std::size_t point, std::size_t points, std::size_t reach);
+
+// A point of a row.
 struct RowPoint {
-  HalvesSpread spread;
-  double step = 0;
+  HalvesSpread spread;  // Of its values.
+  Missable missable;    // By a value.
+  double edge = 0;      // By how much an edge of a shadow may change a value.
+  double ratio = 1;     // VarianceRatio::ratio.
 };
 
-// Points in a row, which get light in much the same ways: where the values of one agree, what its neighbours met and
-// missed tells what it may have missed itself.
+// Points in a row: where the values of one agree, what its neighbours met and missed tells what it may have missed.
 class MissesInRow {
  public:
-  // Points without values tell nothing. The row must outlive this.
-  explicit MissesInRow(std::span<const std::optional<RowPoint>> row);
-  // Of a point that has values.
-  MeanEstimate Estimate(std::size_t point) const;
+  // Points without values tell nothing.
+  explicit MissesInRow(std::vector<std::optional<RowPoint>> row);
+  // Mean square of what the values of a point that has some are off by together, should they agree; absent if nothing
+  // is known of it.
+  std::optional<double> At(std::size_t point) const;
 
  private:
-  std::pair<std::size_t, std::size_t> Neighbours(std::size_t point) const;
-
-  std::span<const std::optional<RowPoint>> row_;
-  std::vector<Missable> missable_;
+  std::vector<std::optional<RowPoint>> row_;
   std::vector<SharedMisses> misses_;
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Estimates from randomised replicates. Samples within a replicate are correlated (they are stratified); the means of
-// replicates are not, and they alone tell the error. Where the replicates of each half share a sequence, the halves
-// alone are independent (see halves_ratio.h).
+// replicates are not, unless those of each half share a sequence (see halves_ratio.h), and they alone tell the error.
 #ifndef FLATLIGHT_CORE_STATISTICS_REPLICATES_H_
 #define FLATLIGHT_CORE_STATISTICS_REPLICATES_H_
 

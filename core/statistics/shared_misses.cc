@@ -9,12 +9,12 @@
 
 namespace flatlight {
 
-void SharedMisses::Add(const HalvesSpread& values, double event) {
+void SharedMisses::Add(const HalvesSpread& values, double event, double ratio) {
   const std::array<Spread, 2> halves = {values.first, values.second};
   const double n = values.first.count;
   FLATLIGHT_DCHECK(n >= 2 && values.second.count == n);
   const double off = halves[0].mean - halves[1].mean;
-  const double variances = (halves[0].squares + halves[1].squares) / (n * (n - 1));
+  const double variances = ratio * (halves[0].squares + halves[1].squares) / (n * (n - 1));
   for (std::size_t h = 0; h < 2; ++h) {
     if (!Agree(halves[h].squares, event)) continue;
     points_ += 0.5;

@@ -23,8 +23,9 @@ inline double MostMissed(double largest, double n) { return largest * std::sqrt(
 // (All values agree less often than half of them, and are off by less then: errors come out somewhat too large.)
 class SharedMisses {
  public:
-  // The values of a point, of which each tells of the same mean; `event` as of Agree.
-  void Add(const HalvesSpread& values, double event);
+  // The values of a point, of which each tells of the same mean; `event` as of Agree. `ratio`: the variance of a half's
+  // mean over what its spread tells.
+  void Add(const HalvesSpread& values, double event, double ratio = 1);
   // The points of another one.
   void Add(const SharedMisses& other);
   // Whether halves that met an event which the other one did not are higher for it on the whole, as they are where

@@ -243,6 +243,29 @@ TEST(RayTracingTest, StopsAtItsTarget) {
   }
 }
 
+// Points stop in different passes. What is told of their errors is what was known when they stopped.
+TEST(RayTracingTest, PointsThatStopEarlyKeepTheirErrors) {
+  SceneMaker maker = UnitLight();
+  maker.Segment("blocker", {0.5, 0.5}, {1.2, 0.5})
+      .Segment("white", {-1, 0}, {-1, 1}, {.reflectance = {0.8}})
+      .Probe("floor", 100);
+  const auto scene = maker.Build();
+  Settings settings;
+  settings.method = Method::kRayTracing;
+  settings.target_error = 0.05;
+  settings.derivatives = Derivatives::kNone;
+  const Ended ended = Render(scene, settings);
+  EXPECT_EQ(ended.reason, EndReason::kTargetReached);
+  const ProbeField& floor = ended.field->probes[0];
+  EXPECT_NE(*std::min_element(floor.samples.begin(), floor.samples.end()),
+            *std::max_element(floor.samples.begin(), floor.samples.end()));
+  double mean = 0;
+  for (const double value : floor.irradiance) mean += value / 100;
+  // The pass that is delivered follows the one that decided, with twice as many rays.
+  for (std::size_t i = 0; i < floor.irradiance.size(); ++i)
+    EXPECT_LE(floor.standard_error[i], 0.05 * std::max(floor.irradiance[i], 0.01 * mean)) << i;
+}
+
 // Gathers are stratified: with four times the rays the error of direct light falls to a quarter or less.
 TEST(RayTracingTest, ErrorOfDirectLightFallsAsOneOverRays) {
   SceneMaker maker = UnitLight();
@@ -285,7 +308,9 @@ TEST(RayTracingTest, Darkness) {
   const Ended ended = Render(scene, Branching(256));
   EXPECT_EQ(ended.field->rays, 0);
   EXPECT_EQ(ended.field->probes[0].irradiance, std::vector<double>{0});
+  EXPECT_EQ(ended.field->probes[0].standard_error, std::vector<double>{0});
   EXPECT_EQ(ended.field->probes[0].gradient, std::vector<double>{0});
+  EXPECT_EQ(ended.field->probes[0].gradient_error, std::vector<double>{0});
   EXPECT_EQ(ended.field->probes[0].samples, std::vector<double>{256});
 }
 

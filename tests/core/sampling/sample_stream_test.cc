@@ -55,7 +55,7 @@ TEST(SampleStreamTest, FirstPointsFillEveryElementaryInterval) {
 TEST(SampleStreamTest, MembersOfAGroupFillFinerIntervalsTogether) {
   for (const std::uint64_t seed : {0u, 5u}) {
     for (unsigned k = 0; k <= 9; ++k) {
-      for (const std::uint32_t first : {0u, 3u << k}) {
+      for (const std::uint32_t first : {0u, 2u << k, 3u << k}) {
         std::vector<SamplePair> points;
         for (std::uint32_t member = 0; member < SampleStream::kMembers; ++member) {
           const SampleStream stream = SampleStream::Member(seed, 2, 1, member);
@@ -196,8 +196,6 @@ TEST(SampleStreamTest, ReplicatesGroupsPointsSeedsAndDimensionsAreIndependent) {
   }
 }
 
-// Owen's scrambling flips each digit by a coin of its own for every choice of the digits above it. Seven coins decide
-// the first three digits: all 128 outcomes must be equally frequent over keys.
 // Any two copies come out as any two, all alike likely: 56 outcomes.
 TEST(SobolTest, PairsOfCopiesAreRenamedEvenly) {
   for (std::uint32_t first = 0; first < kSharedNets; ++first) {
@@ -215,6 +213,8 @@ TEST(SobolTest, PairsOfCopiesAreRenamedEvenly) {
   }
 }
 
+// Owen's scrambling flips each digit by a coin of its own for every choice of the digits above it. Seven coins decide
+// the first three digits: all 128 outcomes must be equally frequent over keys.
 TEST(ScrambleTest, CoinsOfTheFirstThreeDigitsAreIndependent) {
   std::vector<int> counts(128);
   for (std::uint64_t n = 0; n < 200'000; ++n) {

@@ -36,8 +36,9 @@ TEST(HalvesRatiosTest, FewPointsAreDrawnTowardsOne) {
   EXPECT_GT(one.Result().ratio, 0.85);
   EXPECT_LT(many.Result().ratio, 0.14);
   EXPECT_GT(many.Result().ratio, 0.125);
-  EXPECT_LT(one.Result().Of({1, 1, 15}).variance, 1);
-  EXPECT_LT(many.Result().Of({1, 1, 15}).degrees_of_freedom, 15);
+  EXPECT_EQ(many.Result().Of({1, 2, 15}).variance, 2 * many.Result().ratio);
+  const double firm = 65 + 64.0 / 73;
+  EXPECT_NEAR(many.Result().Of({1, 1, 15}).degrees_of_freedom, 1 / (1 / 15.0 + 65 / (firm * firm)), 1e-12);
 }
 
 }  // namespace
