@@ -50,7 +50,6 @@ void ReferenceRendering::Advance(Executor& executor, const Cancellation& cancell
   const Clock::Time now = clock.Now();
   if (!start_) start_ = now;
   if (time_limit_) {
-    // The first round is there whatever it takes.
     const auto left = std::chrono::duration_cast<Clock::Duration>(
         std::max(Seconds(0), Seconds(*time_limit_) - Seconds(now - *start_)));
     budget = std::min(budget, left);
@@ -61,7 +60,7 @@ void ReferenceRendering::Advance(Executor& executor, const Cancellation& cancell
     worlds_->Keep(solver_->TakeWorld(), sharers_);
   } else if (solver_->state() == ReferenceSolver::State::kExhausted) {
     end_reason_ = EndReason::kAccuracyLimit;
-  } else if (time_limit_ && solver_->rounds() > 0 && Seconds(clock.Now() - *start_).count() >= *time_limit_) {
+  } else if (time_limit_ && Seconds(clock.Now() - *start_).count() >= *time_limit_) {
     end_reason_ = EndReason::kTimeLimit;
   }
 }
@@ -83,7 +82,9 @@ RenderProgress ReferenceRendering::Progress() const {
 std::shared_ptr<const Field> ReferenceRendering::Snapshot() const {
   auto field = std::make_shared<Field>();
   field->probes.resize(scene_->probes().size());
-  if (solver_ && solver_->rounds() == 0) return field;
+  const bool first = solver_ && solver_->rounds() == 0;
+  if (first && !done()) return field;
+  const std::vector<ExactValue> first_values = first ? solver_->FirstValues() : std::vector<ExactValue>();
   const auto channels = static_cast<std::size_t>(scene_->channels());
   const WorldUnits units(scene_->frame());
   double bound = 0;
@@ -91,7 +92,7 @@ std::shared_ptr<const Field> ReferenceRendering::Snapshot() const {
   for (std::size_t p = 0; p < scene_->probes().size(); ++p) {
     ProbeField& values = field->probes[p];
     for (const std::size_t end = i + scene_->probes()[p].receivers.size(); i < end; ++i) {
-      const ExactValue value = solver_ ? solver_->values()[i] : ExactValue{};
+      const ExactValue value = solver_ ? (first ? first_values : solver_->values())[i] : ExactValue{};
       for (std::size_t c = 0; c < channels; ++c) {
         values.irradiance.push_back(units.irradiance * value.irradiance.value[c]);
         values.irradiance_error.push_back(units.irradiance * value.irradiance_error.value[c]);

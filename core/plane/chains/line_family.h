@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <optional>
 
 #include "core/math/bernstein.h"
@@ -23,6 +24,9 @@ struct DirectedLine {
 struct LineFit {
   double tolerance = 1e-11;     // Of directions and moments.
   double least_part = 0x1p-20;  // Of the whole; shorter pieces are not made smoother.
+  // By the number of a line: one whose number differs by so much is as good. Without it none is: where lines turn fast,
+  // rounding alone may then ask for pieces without end.
+  std::function<double(double)> shift;
 };
 
 // Lines that depend smoothly on a number between begin and end.
@@ -40,6 +44,17 @@ struct LineFamily {
     for (std::size_t k = 0; k < Bernstein::kCount; ++k) f.b[k] = x.b[k] * p.y - y.b[k] * p.x - moment.b[k] - offset;
     return f;
   }
+  // The lines as a plane mirror through a point shows them; unit normal `n`.
+  LineFamily Reflected(Point2 on, Vector2 n) const {
+    LineFamily family = *this;
+    const double twice = 2 * Dot(n, on - Point2{});
+    for (std::size_t k = 0; k < Bernstein::kCount; ++k) {
+      const double along = 2 * (x.b[k] * n.x + y.b[k] * n.y);
+      family.x.b[k] -= along * n.x, family.y.b[k] -= along * n.y;
+      family.moment.b[k] = twice * (family.x.b[k] * n.y - family.y.b[k] * n.x) - moment.b[k];
+    }
+    return family;
+  }
   double At(double t) const { return begin + t * (end - begin); }
 
   // The family of line(u) over the numbers from begin to end, in as many pieces as it takes to be smooth; calls
@@ -50,12 +65,12 @@ struct LineFamily {
   static void Fit(double begin, double end, const Line& line, const Hopeful& hopeful, const Emit& emit,
                   const LineFit& fit = {}) {
     const double least = std::max(fit.least_part * (end - begin), 16 * kOverlap);
-    FitPart(begin - kOverlap, end + kOverlap, least, fit.tolerance, line, hopeful, emit);
+    FitPart(begin - kOverlap, end + kOverlap, least, fit, line, hopeful, emit);
   }
 
  private:
   template <typename Line, typename Hopeful, typename Emit>
-  static void FitPart(double begin, double end, double least, double tolerance, const Line& line,
+  static void FitPart(double begin, double end, double least, const LineFit& fit, const Line& line,
                       const Hopeful& hopeful, const Emit& emit) {
     LineFamily family;
     family.begin = begin, family.end = end;
@@ -69,24 +84,30 @@ struct LineFamily {
     const bool small = end - begin <= least;
     if (whole) {
       family.x = Bernstein::Through(x), family.y = Bernstein::Through(y), family.moment = Bernstein::Through(moment);
-      if (small || family.Fits(line, tolerance)) return emit(family);
+      if (small || family.Fits(line, fit)) return emit(family);
     } else if (small || !hopeful(begin, end)) {
       return;
     }
     const double middle = 0.5 * (begin + end);
-    FitPart(begin, middle + kOverlap, least, tolerance, line, hopeful, emit);
-    FitPart(middle - kOverlap, end, least, tolerance, line, hopeful, emit);
+    FitPart(begin, middle + kOverlap, least, fit, line, hopeful, emit);
+    FitPart(middle - kOverlap, end, least, fit, line, hopeful, emit);
   }
 
   template <typename Line>
-  bool Fits(const Line& line, double tolerance) const {
+  bool Fits(const Line& line, const LineFit& fit) const {
+    const auto off = [](const DirectedLine& a, const DirectedLine& b) {
+      return std::max({std::abs(a.direction.x - b.direction.x), std::abs(a.direction.y - b.direction.y),
+                       std::abs(a.moment - b.moment)});
+    };
     for (const double t : {0.0, 0.0301536896, 0.32898992833716567, 0.58682408883346, 0.93301270189221941, 1.0}) {
       const std::optional<DirectedLine> at = line(At(t));
       if (!at) return false;
-      if (!(std::abs(x.At(t) - at->direction.x) <= tolerance) || !(std::abs(y.At(t) - at->direction.y) <= tolerance) ||
-          !(std::abs(moment.At(t) - at->moment) <= tolerance)) {
-        return false;
-      }
+      const double error = off(*at, {{x.At(t), y.At(t)}, moment.At(t)});
+      if (error <= fit.tolerance) continue;
+      if (!fit.shift) return false;
+      const double shift = std::min(fit.shift(At(t)), 0.5 * (end - begin));
+      const std::optional<DirectedLine> beside = line(At(t) + (t < 0.5 ? shift : -shift));
+      if (!beside || !(error <= off(*at, *beside))) return false;
     }
     return true;
   }

@@ -55,6 +55,7 @@ Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, 
       before_(mesh_.size(), channels, kNodes),
       first_residual_(mesh_.size(), channels, kResidualCoefficients),
       rounding_(mesh_.size() * channels),
+      unfollowed_(mesh_.size() * channels),
       spread_(mesh_.size() * kNodes * channels) {
   FLATLIGHT_DCHECK(mesh_.size() == 0 || (CanFollow(scene_) && max_bounces != 0u));
   for (std::size_t c = 0; before && !max_bounces && c < channels; ++c) start_.push_back(before->OnNodesOf(mesh_, c));
@@ -99,19 +100,17 @@ double Radiosity::HalfReflectance(std::size_t panel, std::size_t channel) const 
   return 0.5 * scene_.curve_of(mesh_.panels()[panel].element).reflectance.value[channel];
 }
 
-void Radiosity::BuildRows(RowBuilder& builder, std::size_t i) {
+void Radiosity::BuildRows(RowBuilder& builder, std::size_t i, std::size_t n) {
   const Panel& panel = mesh_.panels()[i];
   const Chart& chart = charts_[static_cast<std::size_t>(panel.element)];
   static const auto& points = *new std::vector<double>(NodesAndBetween());
   const bool known = panel.before != Panel::kNew && !rows_before_.nodes.empty();
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    const bool node = n % 2 == 1;
-    const std::size_t count = node ? kNodes : kNodes + 1;
-    Row* before = known ? &(node ? rows_before_.nodes : rows_before_.between)[panel.before * count + n / 2] : nullptr;
-    Row& row = (node ? rows_.nodes : rows_.between)[i * count + n / 2];
-    builder.Build(mesh_, chart.ReceiverAt(panel.element, panel.At(points[n]), panel.side), node, before, row);
-  }
-  for (std::size_t k = 0; k < cells_[i].size(); ++k) {
+  const bool node = n % 2 == 1;
+  const std::size_t count = node ? kNodes : kNodes + 1;
+  Row* own_before = known ? &(node ? rows_before_.nodes : rows_before_.between)[panel.before * count + n / 2] : nullptr;
+  Row& own = (node ? rows_.nodes : rows_.between)[i * count + n / 2];
+  builder.Build(mesh_, chart.ReceiverAt(panel.element, panel.At(points[n]), panel.side), node, own_before, own);
+  for (std::size_t k = n; k < cells_[i].size(); k += kRowParts) {
     Row* before = known ? &rows_before_.cells[panel.before][k] : nullptr;
     builder.Build(mesh_, chart.ReceiverAt(panel.element, cells_[i][k].place, panel.side), false, before,
                   rows_.cells[i][k]);
@@ -270,7 +269,7 @@ void Radiosity::CheckAt(std::size_t i, const Row& row, const double* p, std::siz
     brightest = std::max(brightest, brightest_[row.panels[e] * channels_ + c]);
   }
   residual = half * (direct + sum) - light_.At(i, c, p);
-  rounding = half * (kRounding * size + row.coordinates * brightest + row.lost * errors_.brightest.value[c]);
+  rounding = half * (kRounding * size + row.coordinates * brightest) + UnfollowedAt(i, row, c);
 }
 
 void Radiosity::Check(std::size_t i) {
@@ -285,6 +284,8 @@ void Radiosity::Check(std::size_t i) {
       CheckAt(i, row, p, c, residual[c][n], rounding_here);
       double& rounding = rounding_[i * channels_ + c];
       rounding = std::max(rounding, rounding_here);
+      double& unfollowed = unfollowed_[i * channels_ + c];
+      unfollowed = std::max(unfollowed, UnfollowedAt(i, row, c));
       if (!node) {
         first[c][n] = HalfReflectance(i, c) * row.direct.value[c] - first_.At(i, c, p);
       } else if (std::abs(residual[c][n]) <= rounding_here) {
@@ -399,6 +400,17 @@ bool Radiosity::Bound(const Loop& loop) {
     growth_.reset();
   }
   return ++channel_ == channels_;
+}
+
+double Radiosity::UnfollowedPart(std::size_t c) const {
+  double unfollowed = 0, all = 0;
+  const Values weights = NodeWeights();
+  for (std::size_t r = 0; r < weights.size(); ++r) {
+    const std::size_t at = r / kNodes * channels_ + c;
+    unfollowed += weights[r] * unfollowed_[at];
+    all += weights[r] * (spread_[r * channels_ + c] + rounding_[at]);
+  }
+  return all > 0 ? unfollowed / all : 0;
 }
 
 std::vector<double> Radiosity::Influence() const {

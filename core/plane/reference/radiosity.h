@@ -56,7 +56,9 @@ class Radiosity {
   // Frees the rows: what follows from the light and its errors stays, finer meshes have rows of their own.
   void DropRows();
 
-  void BuildRows(RowBuilder& builder, std::size_t panel);
+  // In parts, of which each may run by itself.
+  static constexpr std::size_t kRowParts = 2 * kLightCoefficients + 1;
+  void BuildRows(RowBuilder& builder, std::size_t panel, std::size_t part);
   bool Solve(const Loop& loop);
   void Check(std::size_t panel);
   void Spread(std::size_t panel);
@@ -67,6 +69,9 @@ class Radiosity {
   LightErrors& errors() { return errors_; }
   // What lies between events on a panel, if it has any.
   const std::vector<Cell>& CellsOf(std::size_t panel) const { return cells_[panel]; }
+  // How much of all that Bound() starts from comes of what ways over mirrors and glass that were not followed further
+  // could have brought: a part of 1.
+  double UnfollowedPart(std::size_t channel) const;
   // What the residual of each panel adds to |T r| of others, summed over them.
   std::vector<double> Influence() const;
 
@@ -90,6 +95,9 @@ class Radiosity {
   void CheckCells(std::size_t panel, std::size_t channel);
   void CheckAt(std::size_t panel, const Row& row, const double* p, std::size_t channel, double& residual,
                double& rounding) const;
+  double UnfollowedAt(std::size_t panel, const Row& row, std::size_t channel) const {
+    return HalfReflectance(panel, channel) * row.lost * errors_.brightest.value[channel];
+  }
 
   const Scene& scene_;
   const std::vector<Chart>& charts_;
@@ -111,6 +119,7 @@ class Radiosity {
   PanelLight first_residual_;
   LightErrors errors_;
   Values rounding_;                           // By panel, then channel.
+  Values unfollowed_;                         // The same; the part that comes of ways not followed further.
   Values spread_;                             // By panel, node, channel: bounds on |T r|.
   std::vector<std::vector<float>> positive_;  // By panel, node; where bounds need them.
 };

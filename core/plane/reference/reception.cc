@@ -39,7 +39,7 @@ double LightErrors::Missed(std::size_t index, const double* weights) const {
 }
 
 Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
-                       const LightErrors* errors, int derivatives) {
+                       const LightErrors* errors, int derivatives, std::optional<SpecularSight>* sight) {
   Received sum;
   shares_.clear();
   for (auto& of_derivative : of_residuals_)
@@ -47,7 +47,15 @@ Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const Pa
   end_errors_ = EndErrors(scene_);
   for (const VisiblePiece& piece : outlook_.From(receiver))
     AddPiece(receiver, mesh, light, errors, derivatives, piece, sum);
-  if (specular_) AddSpecular(receiver, mesh, light, errors, sum);
+  if (specular_) {
+    std::optional<SpecularSight> own;
+    if (sight == nullptr) sight = &own;
+    if (!sight->has_value()) {
+      const std::vector<SpecularPiece>& pieces = specular_->view().From(receiver);
+      *sight = SpecularSight{pieces, specular_->view().lost()};
+    }
+    AddSpecular(receiver, mesh, light, errors, **sight, sum);
+  }
   for (std::size_t c = 0; c < light.channels(); ++c) {
     for (int m = 0; m <= derivatives; ++m) sum.error[m].value[c] += of_residuals_[m][c].total();
     sum.rounding[0].value[c] += end_errors_.joints();
@@ -114,6 +122,7 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
         of_residuals_[m][c].Add((m == 0 ? 1 : 2) * off[m].value[c], m == 0 ? missed : 6 * absolute[m] * own);
         sum.error[m].value[c] += absolute[m] * other;
       }
+      sum.indirect.value[c] += absolute[0] * other;
       share = std::max(share, std::abs(off[0].value[c]) + missed);
     }
     shares_.emplace_back(i, share);
@@ -123,12 +132,10 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
 }
 
 void Reception::AddSpecular(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
-                            const LightErrors* errors, Received& sum) {
+                            const LightErrors* errors, const SpecularSight& sight, Received& sum) {
   const std::size_t channels = light.channels();
-  SpecularView& view = specular_->view();
-  const std::vector<SpecularPiece>& pieces = view.From(receiver);
-  double uncertain = view.lost();
-  for (const SpecularPiece& piece : pieces) {
+  double uncertain = sight.lost;
+  for (const SpecularPiece& piece : sight.pieces) {
     const Spectrum& tint = piece.way->tint;
     const Spectrum emitted = EmittedBy(scene_, piece);
     if (!emitted.IsBlack()) {
@@ -147,15 +154,19 @@ void Reception::AddSpecular(const Receiver& receiver, const PanelMesh& mesh, con
         const double off = tint.value[c] * errors->residual.At(i, c, moments.value.data());
         const double missed = tint.value[c] * errors->Missed(i * channels + c, moments.value.data());
         of_residuals_[0][c].Add(off, missed);
-        sum.error[0].value[c] += tint.value[c] * moments.value[0] * errors->value[i * channels + c];
+        const double other = tint.value[c] * moments.value[0] * errors->value[i * channels + c];
+        sum.error[0].value[c] += other;
+        sum.indirect.value[c] += other;
         share = std::max(share, std::abs(off) + missed);
       }
       if (errors) shares_.emplace_back(i, share);
     });
   }
   if (!errors) return;
-  for (std::size_t c = 0; c < channels; ++c)
-    sum.rounding[0].value[c] += uncertain * errors->brightest.value[c] + kRounding * std::abs(sum.value[0].value[c]);
+  for (std::size_t c = 0; c < channels; ++c) {
+    sum.unfollowed.value[c] = uncertain * errors->brightest.value[c];
+    sum.rounding[0].value[c] += sum.unfollowed.value[c] + kRounding * std::abs(sum.value[0].value[c]);
+  }
 }
 
 // A moving end: d/dx of the integral up to it.

@@ -42,6 +42,8 @@ struct Received {
   Spectrum error[3];  // Bounds, where errors of the light are given.
   // Bounds on rounding, of coordinates too, but for errors of the light.
   Spectrum rounding[3];
+  Spectrum unfollowed;  // The part of rounding[0] that is less where ways over mirrors and glass are followed further.
+  Spectrum indirect;    // The part of error[0] that comes of LightErrors::value.
 };
 
 // Holds working memory: one for each thread.
@@ -58,10 +60,16 @@ class Reception {
     if (specular) specular_.emplace(caster, charts, *specular);
   }
 
+  // As in SpecularViewOptions, for calls to come.
+  void set_least_share(double least_share) {
+    if (specular_) specular_->set_least_share(least_share);
+  }
+
   // What panels reflect and, over mirrors and through glass, what emits. `errors` may be null. `derivatives` 0, 1 or 2;
-  // those of light over mirrors and through glass are left out.
+  // those of light over mirrors and through glass are left out. `sight`: what is seen so, if it is known already; where
+  // it holds nothing it is found, and filled. Null: it is found.
   Received At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
-              int derivatives);
+              int derivatives, std::optional<SpecularSight>* sight = nullptr);
   // What each panel's residual adds to the error of irradiance in the channel where it is largest, at the receiver of
   // the last call: panels and values.
   const std::vector<std::pair<std::size_t, double>>& shares() const { return shares_; }
@@ -70,7 +78,7 @@ class Reception {
   void AddPiece(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
                 int derivatives, const VisiblePiece& piece, Received& sum);
   void AddSpecular(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
-                   Received& sum);
+                   const SpecularSight& sight, Received& sum);
   void AddEnd(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
               int derivatives, const VisiblePiece& piece, bool is_end, Received& sum);
 

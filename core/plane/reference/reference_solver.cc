@@ -8,6 +8,7 @@
 
 #include "core/math/check.h"
 #include "core/math/power.h"
+#include "core/plane/reference/brightest_light.h"
 #include "core/plane/reference/light_events.h"
 #include "core/plane/reference/mesh_maker.h"
 #include "core/plane/reference/quadrature.h"
@@ -16,6 +17,7 @@
 namespace flatlight {
 namespace {
 
+constexpr std::size_t kRowParts = Radiosity::kRowParts;
 constexpr int kFirstSteps = 2;
 // Light of n events, which have either sign, is as hard as that of about the root of n.
 constexpr double kRootAtFirst = 4;
@@ -59,13 +61,21 @@ std::unique_ptr<SolvedWorld> NewWorld(std::shared_ptr<const RayCaster> caster, c
   return world;
 }
 
-// Of what is seen over mirrors and through glass, beside the error that is wanted.
-constexpr double kSpecularShare = 1e-3;
+// How far ways over mirrors and through glass are followed at first.
+constexpr double kFirstShare = 1e-6;
+// Stands for what nothing bounds, for results hold finite numbers alone.
+constexpr double kUnbounded = 1e200;
+// Of ways that are not followed further, beside the error that is wanted; in one round they are followed no more than
+// so much further; and no further than rounding.
+constexpr double kUnfollowed = 0.3;
+constexpr double kMostFurther = 1e-3;
+constexpr double kLeastShare = 1e-15;
+constexpr std::size_t kMostSights = std::size_t{1} << 28;  // Bytes.
 
 std::optional<SpecularViewOptions> SpecularOptions(const Scene& world, const ReferenceOptions& options) {
   if (IsDirectLight(world, options) || !HasSpecular(world)) return std::nullopt;
   SpecularViewOptions of_view;
-  of_view.least_share = std::clamp(kSpecularShare * options.target_error, 1e-13, 1e-6);
+  of_view.least_share = kFirstShare;
   return of_view;
 }
 
@@ -108,21 +118,29 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
     points_of_probe_.push_back(static_cast<double>(count));
   }
   direct_.resize(points_.size());
+  has_direct_.resize(points_.size());
   relative_before_.resize(points_.size());
   idle_rounds_.resize(points_.size());
   dark_.resize(points_.size());
+  goes_further_.resize(points_.size());
+  if (specular_) {
+    limits_.resize(points_.size());
+    for (ViewLimit& limit : limits_) limit.least_share = specular_->least_share;
+  }
   const Scene& world = world_->caster->scene();
   if (world_->radiosity) {
     FLATLIGHT_DCHECK(world_->channels == channels_ && world_->max_bounces == options_.max_bounces);
     options_.max_bounces = MeaningfulBounces(world, options_.max_bounces);
     StartRound();
-    step_ = FirstOfPoints();
+    after_direct_ = FirstOfPoints();
     return;
   }
   if (IsDirectLight(world, options_)) {
     options_.max_bounces.reset();
     world_->events.resize(2 * world.elements().size());
     StartMesh(PanelMesh(world.elements().size(), {}));
+    after_direct_ = step_;
+    step_ = Step::kDirect;
     return;
   }
   options_.max_bounces = MeaningfulBounces(world, options_.max_bounces);
@@ -131,6 +149,22 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
 }
 
 ReferenceSolver::~ReferenceSolver() = default;
+
+std::vector<ExactValue> ReferenceSolver::FirstValues() const {
+  const Scene& world = world_->caster->scene();
+  const bool reflects = !IsDirectLight(world, options_);
+  const Spectrum brightest = BrightestLight(world);
+  std::vector<ExactValue> values = direct_;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!reflects && has_direct_[i] != 0) continue;
+    values[i].irradiance_error = values[i].irradiance_error + 2 * brightest;
+    if (has_direct_[i] == 0) values[i].irradiance_error = values[i].irradiance_error + LightsAt(world, *points_[i]);
+    for (int c = 0; c < kMaxChannels; ++c)
+      values[i].irradiance_error[c] = std::min(values[i].irradiance_error[c], kUnbounded);
+    values[i].gradient_error = values[i].hessian_error = Spectrum::Grey(kUnbounded);
+  }
+  return values;
+}
 
 std::unique_ptr<SolvedWorld> ReferenceSolver::TakeWorld() {
   FLATLIGHT_DCHECK(state_ == State::kReached);
@@ -198,7 +232,10 @@ void ReferenceSolver::StartFirstMesh() {
 
 std::size_t ReferenceSolver::Count() const {
   if (step_ == Step::kEvents) return found_.size();
-  return IsWhole() ? 1 : step_ == Step::kPoints ? points_.size() : panels();
+  if (step_ == Step::kDirect || step_ == Step::kPoints) return points_.size();
+  // Of what is seen over mirrors and through glass a single row is much work.
+  if (step_ == Step::kRows && specular_) return panels() * kRowParts;
+  return IsWhole() ? 1 : panels();
 }
 
 void ReferenceSolver::Advance(Executor& executor, int threads, const Cancellation& cancellation, const Clock& clock,
@@ -236,10 +273,17 @@ bool ReferenceSolver::StepWhole(Executor& executor, int threads) {
 
 void ReferenceSolver::Work(Worker& worker, std::size_t i) {
   switch (step_) {
+    case Step::kDirect:
+      direct_[i] = worker.exact.Evaluate(*points_[i]);
+      lights_.Add(*points_[i], direct_[i]);
+      has_direct_[i] = 1;
+      return;
     case Step::kEvents:
       return finder_->Find(i, found_[i]);
     case Step::kRows:
-      return world_->radiosity->BuildRows(worker.rows, i);
+      if (specular_) return world_->radiosity->BuildRows(worker.rows, i / kRowParts, i % kRowParts);
+      for (std::size_t part = 0; part < kRowParts; ++part) world_->radiosity->BuildRows(worker.rows, i, part);
+      return;
     case Step::kCheck:
       return world_->radiosity->Check(i);
     case Step::kSpread:
@@ -279,14 +323,20 @@ void ReferenceSolver::FindSlopes(Worker& worker, std::size_t i) {
 
 void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
   const Receiver& receiver = *points_[point];
-  if (rounds_ == 0) {
-    direct_[point] = worker.exact.Evaluate(receiver);
-    lights_.Add(receiver, direct_[point]);
-  }
   worker.shares.resize(panels(), 0.0);
   ExactValue value = direct_[point];
+  std::optional<SpecularSight>* const sight = specular_ ? &limits_[point].sight : nullptr;
+  const bool was_kept = sight != nullptr && sight->has_value();
+  if (specular_) worker.reception.set_least_share(limits_[point].least_share);
   const Received received = worker.reception.At(receiver, world_->radiosity->mesh(), world_->radiosity->light(),
-                                                &world_->radiosity->errors(), options_.derivatives);
+                                                &world_->radiosity->errors(), options_.derivatives, sight);
+  if (sight != nullptr && !was_kept) {
+    const std::size_t bytes = (*sight)->bytes();
+    if (sight_bytes_.fetch_add(bytes) + bytes > kMostSights) {
+      sight_bytes_.fetch_sub(bytes);
+      sight->reset();
+    }
+  }
   Spectrum* const values[3] = {&value.irradiance, &value.gradient, &value.hessian};
   Spectrum* const errors[3] = {&value.irradiance_error, &value.gradient_error, &value.hessian_error};
   for (int m = 0; m <= options_.derivatives; ++m) {
@@ -296,6 +346,7 @@ void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
       (*errors[m])[c] += received.error[m][from] + received.rounding[m][from];
     }
   }
+  if (specular_) limits_[point].unfollowed = received.unfollowed, limits_[point].indirect = received.indirect;
   // Light is not negative, even where its error is larger.
   double size = 0;
   for (int c = 0; c < kMaxChannels; ++c) {
@@ -314,11 +365,59 @@ void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
 
 void ReferenceSolver::NextStep() {
   next_ = 0;
+  if (step_ == Step::kDirect) {
+    step_ = after_direct_;
+    return;
+  }
   if (step_ == Step::kEvents) return StartFirstMesh();
   if (step_ == Step::kPoints) return EndPoints();
   if (step_ == Step::kSplit) return StartMesh(SplitMesh(world_->caster->scene(), world_->radiosity->mesh(), places_));
   step_ = static_cast<Step>(static_cast<int>(step_) + 1);
   if (step_ == Step::kSlopes) step_ = FirstOfPoints();
+}
+
+// What the error of a point is relative to.
+double ReferenceSolver::SizeAt(std::size_t i, int c) const {
+  return std::max(values_[i].irradiance[c], kFloor * means_[probe_of_point_[i]][c]);
+}
+
+// Where what ways could have brought that were not followed is much of a bound, these are: from the point on, or from
+// all panels.
+void ReferenceSolver::FollowFurther() {
+  std::fill(goes_further_.begin(), goes_further_.end(), 0);
+  new_rows_ = false;
+  if (!specular_) return;
+  double of_rows[kMaxChannels], least_factor = 1;
+  for (int c = 0; c < options_.channels; ++c)
+    of_rows[c] = world_->radiosity->UnfollowedPart(static_cast<std::size_t>(c));
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (dark_waits_ && dark_[i] != 0) continue;
+    ViewLimit& limit = limits_[i];
+    double factor = 1, factor_of_rows = 1, unfollowed = 0;
+    for (int c = 0; c < options_.channels; ++c) {
+      const double error = values_[i].irradiance_error[c], allowed = options_.target_error * SizeAt(i, c);
+      if (!(error > allowed)) continue;
+      const auto needed = [&](double part) {
+        const double wanted = kUnfollowed * std::max(allowed, error - part);
+        return part > 2 * wanted ? wanted / part : 1;
+      };
+      unfollowed = std::max(unfollowed, limit.unfollowed[c]);
+      factor = std::min(factor, needed(limit.unfollowed[c]));
+      factor_of_rows = std::min(factor_of_rows, needed(of_rows[c] * limit.indirect[c]));
+    }
+    if (factor < 1 && limit.least_share > kLeastShare && unfollowed < kIdle * limit.before) {
+      limit.before = unfollowed;
+      if (limit.sight) sight_bytes_ -= limit.sight->bytes();
+      limit.sight.reset();
+      limit.least_share = std::max(limit.least_share * std::max(factor, kMostFurther), kLeastShare);
+      goes_further_[i] = 1;
+    }
+    if (factor_of_rows < 1 && specular_->least_share > kLeastShare) goes_further_[i] = 1;
+    least_factor = std::min(least_factor, factor_of_rows);
+  }
+  if (!(least_factor < 1) || !(specular_->least_share > kLeastShare)) return;
+  specular_->least_share = std::max(specular_->least_share * std::max(least_factor, kMostFurther), kLeastShare);
+  new_rows_ = true;
 }
 
 void ReferenceSolver::EndPoints() {
@@ -329,19 +428,22 @@ void ReferenceSolver::EndPoints() {
   }
   double brightest = 0;
   for (const Spectrum& mean : means) brightest = std::max({brightest, mean[0], mean[1], mean[2]});
+  means_ = std::move(means);
+  values_.swap(coming_);
+  FollowFurther();
   relative_error_ = 0;
   double to_improve = 0, of_dark = 0;  // The largest of points that still improve.
   for (std::size_t i = 0; i < points_.size(); ++i) {
     double relative = 0;
     dark_[i] = 1;
     for (int c = 0; c < options_.channels; ++c) {
-      const double size = std::max(coming_[i].irradiance[c], kFloor * means[probe_of_point_[i]][c]);
-      relative = std::max(relative, Relative(coming_[i].irradiance_error[c], size));
+      const double size = SizeAt(i, c);
+      relative = std::max(relative, Relative(values_[i].irradiance_error[c], size));
       if (size > kDark * kFloor * brightest) dark_[i] = 0;
     }
     relative_error_ = std::max(relative_error_, relative);
     if (rounds_ > 0 && relative > options_.target_error) {
-      const bool improves = relative <= kIdle * relative_before_[i];
+      const bool improves = relative <= kIdle * relative_before_[i] || goes_further_[i] != 0;
       if (improves) {
         idle_rounds_[i] = 0;
       } else if (idle_rounds_[i] < kMostIdleRounds) {
@@ -354,8 +456,6 @@ void ReferenceSolver::EndPoints() {
   }
   dark_waits_ = to_improve > options_.target_error;
   if (!dark_waits_) to_improve = std::max(to_improve, of_dark);
-  means_ = std::move(means);
-  values_.swap(coming_);
   if (rounds_++ == 0) first_relative_error_ = relative_error_;
   if (relative_error_ <= options_.target_error) {
     state_ = State::kReached;
@@ -381,9 +481,15 @@ void ReferenceSolver::EndPoints() {
   split_ = PanelsToSplit(shares_);
   const auto splits = static_cast<double>(std::count(split_.begin(), split_.end(), 1));
   const double growth = 1 + splits / static_cast<double>(panels());
-  if (splits == 0 || growth * growth * static_cast<double>(world_->radiosity->memory()) > kMostMemory) {
+  const bool goes_further = std::find(goes_further_.begin(), goes_further_.end(), 1) != goes_further_.end();
+  if ((splits == 0 && !goes_further) ||
+      growth * growth * static_cast<double>(world_->radiosity->memory()) > kMostMemory) {
     state_ = State::kExhausted;
     return;
+  }
+  if (new_rows_) {
+    world_->radiosity->DropRows();
+    idle_.clear();
   }
   step_ = Step::kSplit;
 }

@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_CORE_PLANE_REFERENCE_REFERENCE_SOLVER_H_
 #define FLATLIGHT_CORE_PLANE_REFERENCE_REFERENCE_SOLVER_H_
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -56,6 +57,8 @@ class ReferenceSolver {
 
   // By point, after the last round that was finished; empty before the first was.
   const std::vector<ExactValue>& values() const { return values_; }
+  // By point, before the first round is done: direct light as far as it is known, and bounds on all light.
+  std::vector<ExactValue> FirstValues() const;
   // The largest bound in units of max(irradiance, 1 % of its probe's mean).
   double relative_error() const { return relative_error_; }
   double first_relative_error() const { return first_relative_error_; }
@@ -70,7 +73,15 @@ class ReferenceSolver {
 
  private:
   struct Worker;
-  enum class Step : std::uint8_t { kEvents, kRows, kSolve, kCheck, kSpread, kBound, kSlopes, kPoints, kSplit };
+  // How far ways over mirrors and glass are followed from a point, and what that leaves of its bound.
+  struct ViewLimit {
+    double least_share = 0;
+    Spectrum unfollowed = {};  // Of ways from the point itself,
+    Spectrum indirect = {};    // and what the error of what panels reflect adds, of whatever that comes.
+    double before = std::numeric_limits<double>::infinity();  // Unfollowed, when ways were last followed further.
+    std::optional<SpecularSight> sight = {};                  // Kept from round to round, if there is memory for it.
+  };
+  enum class Step : std::uint8_t { kDirect, kEvents, kRows, kSolve, kCheck, kSpread, kBound, kSlopes, kPoints, kSplit };
 
   std::unique_ptr<Worker> Take();
   void Return(std::unique_ptr<Worker> worker);
@@ -83,6 +94,8 @@ class ReferenceSolver {
   void Gather(Worker& worker, std::size_t point);
   void NextStep();
   void EndPoints();
+  double SizeAt(std::size_t point, int channel) const;
+  void FollowFurther();
   void StartMesh(PanelMesh mesh);
   void StartFirstMesh();
   void StartRound();
@@ -98,17 +111,22 @@ class ReferenceSolver {
   std::vector<std::vector<EventPlace>> found_;
   double tolerance_;  // To which equations are solved.
   LightSolver lights_;
-  std::optional<SpecularViewOptions> specular_;
+  std::optional<SpecularViewOptions> specular_;  // Of rows.
   std::vector<const Receiver*> points_;
   std::vector<std::size_t> probe_of_point_;
   std::vector<double> points_of_probe_;
   std::vector<ExactValue> direct_;  // By point.
-  std::vector<Spectrum> means_;     // By probe, of irradiance after the round before.
+  std::vector<char> has_direct_;
+  std::vector<Spectrum> means_;  // By probe, of irradiance after the round before.
 
-  Step step_ = Step::kEvents;
+  Step step_ = Step::kDirect, after_direct_ = Step::kEvents;
   std::size_t next_ = 0;            // In the step.
   std::vector<ExactValue> coming_;  // By point, of this round.
   std::vector<double> shares_;      // By panel: the largest share of the error that is allowed.
+  std::vector<ViewLimit> limits_;   // By point.
+  std::atomic<std::size_t> sight_bytes_ = 0;
+  std::vector<char> goes_further_;  // By point: its bound is less in the next round for ways followed further.
+  bool new_rows_ = false;           // All rows are made anew then.
   std::vector<char> split_;
   std::vector<std::vector<double>> places_;
 

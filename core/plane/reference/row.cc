@@ -100,7 +100,7 @@ void RowBuilder::AddEmission(const Receiver& receiver, Row& row) {
     if (emitted.IsBlack()) continue;
     const SpecularGather::Moments moments = specular_->OfPiece(receiver, piece);
     row.direct = row.direct + moments.value[0] * (piece.way->tint * emitted);
-    row.coordinates += moments.error;
+    row.lost += moments.error;
     for (int c = 0; c < kMaxChannels; ++c) row.brightest[c] = std::max(row.brightest[c], emitted[c]);
   }
 }
@@ -119,7 +119,7 @@ void RowBuilder::AddSpecular(const PanelMesh& mesh, const Receiver& receiver, bo
       if (Copy(mesh.panels()[i], number, high, row)) return;
       const SpecularGather::Moments moments = moments_of();
       AddEntry(moments.value.data(), count, row);
-      row.coordinates += moments.error;
+      row.lost += moments.error;
     });
   }
 }

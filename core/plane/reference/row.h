@@ -73,6 +73,10 @@ class RowBuilder {
     if (specular) specular_.emplace(caster, charts, *specular);
   }
 
+  // As in SpecularViewOptions; for rows to come that have none before.
+  void set_least_share(double least_share) {
+    if (specular_) specular_->set_least_share(least_share);
+  }
   // `before`, if not null: the row of the same receiver with the mesh that this one was made of. What is in it already,
   // and what is seen from there, is not computed again; it is left empty. Without `high` the row has no high
   // coefficients.

@@ -32,7 +32,7 @@ std::optional<double> SpecularGather::PlaceOf(const Receiver& receiver, const Sp
 std::size_t SpecularGather::PanelAt(const Receiver& receiver, const SpecularPiece& piece, const PanelMesh& mesh,
                                     double x) const {
   const PanelMesh::Range range = mesh.On(piece.element, piece.side);
-  const std::optional<SpecularRay> ray = FollowWay(scene_, receiver, *piece.way, piece.directions->At(x));
+  const std::optional<SpecularRay> ray = FollowWay(scene_, *piece.way, piece.directions->At(x));
   const std::optional<double> u = ray ? PlaceOf(receiver, piece, *ray) : std::nullopt;
   if (!u) return range.last;
   std::size_t i = range.first;
@@ -62,7 +62,7 @@ SpecularGather::Moments SpecularGather::Of(const Receiver& receiver, const Specu
     for (std::size_t k = 0; k < kPoints; ++k) {
       const double x = 0.5 * ((1 - rule.node[k]) * low + (1 + rule.node[k]) * high);
       const double number = part.At(x), theta = piece.directions->At(number);
-      const std::optional<SpecularRay> ray = FollowWay(scene_, receiver, *piece.way, theta);
+      const std::optional<SpecularRay> ray = FollowWay(scene_, *piece.way, theta);
       if (!ray) continue;
       if (panel != nullptr) {
         const std::optional<double> u = PlaceOf(receiver, piece, *ray);

@@ -27,6 +27,10 @@ class SpecularGather {
       : scene_(caster.scene()), charts_(charts), tolerance_(options.least_share), view_(caster, options) {}
 
   SpecularView& view() { return view_; }
+  void set_least_share(double least_share) {
+    tolerance_ = least_share;
+    view_.set_least_share(least_share);
+  }
 
   // Irradiance at the receiver from Legendre polynomials on a panel, in a part of a piece.
   struct Moments {

@@ -23,29 +23,79 @@ constexpr double kFit = 0.1, kBestFit = 1e-11, kWorstFit = 1e-6;
 constexpr double kBeside = 1e-6, kGrazing = 1e-4;
 // A polynomial's root, and the place where total reflection begins.
 constexpr double kRootWithin = 1e-3;
+// Directions nearer to each other are the same but for rounding.
+constexpr double kSameDirection = 4e-15;
 
 bool Reflects(const Curve& curve) { return !curve.reflectance.IsBlack(); }
 
-ChainRays<1> Begin(const Receiver& receiver, double theta) {
-  const SinCosValue turn = SinCos(theta);
-  ChainRays<1> rays;
-  rays.ray.from = VectorSeries<1>::Constant(receiver.position - Point2{});
-  rays.ray.direction = VectorSeries<1>::Constant(turn.sin * receiver.tangent + turn.cos * receiver.normal);
-  rays.flux[0] = 1;
-  return rays;
+// How far a ray goes to the element's line or circle, as DistanceTo has it.
+std::optional<double> Distance(const Element& element, Point2 from, Vector2 direction, bool far, bool own_circle) {
+  const Vector2 q = from - element.a;
+  if (element.kind == Element::Kind::kSegment) {
+    const Vector2 along = element.b - element.a;
+    const double denominator = Cross(direction, along);
+    if (denominator == 0) return std::nullopt;
+    return -Cross(q, along) / denominator;
+  }
+  const double bend = 1 / element.radius;
+  const double b = Dot(direction, element.radial_a + bend * q);
+  if (own_circle) return -2 * element.radius * b;
+  const double c = Dot(q, element.radial_a) + 0.5 * bend * Dot(q, q);
+  const double discriminant = b * b - 2 * bend * c;
+  if (!(discriminant > 0)) return std::nullopt;
+  const double root = std::sqrt(discriminant);
+  if (b < 0) return far ? (root - b) * element.radius : 2 * c / (root - b);
+  return far ? -2 * c / (root + b) : -(root + b) * element.radius;
 }
 
-std::optional<double> Distance(const Scene& scene, ElementId before, const RaySeries<1>& ray, ElementId to, bool far) {
-  const Element& element = scene.element(to);
-  const bool own = element.kind == Element::Kind::kArc && before != ElementId::kNone &&
-                   scene.element(before).carrier == element.carrier;
-  const std::optional<Series<1>> distance = DistanceTo(element, ray, far, own);
-  if (!distance) return std::nullopt;
-  return (*distance)[0];
+// Unit normal of the front at a place on the circle, which is there to rounding.
+Vector2 FrontAt(const Element& arc, Point2 place) {
+  const Vector2 outward = arc.radial_a + (1 / arc.radius) * (place - arc.a);
+  return (-arc.Orientation() * (1.5 - 0.5 * Dot(outward, outward))) * outward;
+}
+
+// As TurnAt does it.
+bool Turn(const SpecularWay::Turning& turning, SpecularRay& ray) {
+  const Element& element = *turning.element;
+  Vector2 normal = element.kind == Element::Kind::kSegment ? turning.front : FrontAt(element, ray.from);
+  double cosine = -Dot(normal, ray.direction);
+  const bool front = cosine > 0;
+  if (!front) normal = -normal, cosine = -cosine;
+  if (turning.glass) {
+    const double ratio = front ? turning.ior : turning.inverse_ior;
+    const Vector2 tangent{normal.y, -normal.x};
+    const double sine = (front ? turning.inverse_ior : turning.ior) * Dot(tangent, ray.direction);
+    const double square = 1 - sine * sine;
+    if (square > 0) {
+      const double behind = std::sqrt(square);
+      const double parallel = (ratio * cosine - behind) / (ratio * cosine + behind);
+      const double perpendicular = (cosine - ratio * behind) / (cosine + ratio * behind);
+      const double reflected = 0.5 * (parallel * parallel + perpendicular * perpendicular);
+      if (turning.crosses) {
+        ray.direction = sine * tangent - behind * normal;
+        ray.share *= 1 - reflected;
+        return true;
+      }
+      ray.share *= reflected;
+    }
+  }
+  if (turning.crosses) return false;
+  ray.direction = ray.direction + (2 * cosine) * normal;
+  return true;
 }
 
 ElementId LastOf(const Receiver& receiver, const SpecularWay& way) {
   return way.links.empty() ? receiver.element : way.links.back().element;
+}
+
+bool IsOwnCircle(const Scene& scene, ElementId last, const Element& element) {
+  return element.kind == Element::Kind::kArc && last != ElementId::kNone &&
+         scene.element(last).carrier == element.carrier;
+}
+
+Vector2 FrontOf(const Element& segment) {
+  const Vector2 along = segment.b - segment.a;
+  return Left(along / Length(along));
 }
 
 // Of the indices of refraction behind a curve and before it.
@@ -59,24 +109,39 @@ double SinesBetween(double from, double to) { return std::max(SinCos(to).sin - S
 
 }  // namespace
 
-std::optional<SpecularRay> FollowWay(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
-                                     double theta) {
-  ChainRays<1> rays = Begin(receiver, theta);
-  ElementId before = receiver.element;
-  for (const ChainLink& link : way.links) {
-    const std::optional<double> distance = Distance(scene, before, rays.ray, link.element, link.far);
+std::optional<SpecularRay> FollowWay(const Scene& scene, const SpecularWay& way, double theta) {
+  const SinCosValue turn = SinCos(theta);
+  SpecularRay ray{way.image, turn.sin * way.tangent + turn.cos * way.normal, 1};
+  const std::size_t plane = way.links.size() - way.turnings.size();
+  if (plane > 0) {
+    const auto distance = Distance(scene.element(way.links[plane - 1].element), ray.from, ray.direction, false, false);
     if (!distance) return std::nullopt;
-    rays.ray.from = rays.ray.from + *distance * rays.ray.direction;
-    if (!TurnAt(scene, link, rays)) return std::nullopt;
-    before = link.element;
+    ray.from = ray.from + *distance * ray.direction;
   }
-  return SpecularRay{Point2{} + rays.ray.from.Value(), rays.ray.direction.Value(), rays.flux[0] * way.compression};
+  for (const SpecularWay::Turning& turning : way.turnings) {
+    const auto distance = Distance(*turning.element, ray.from, ray.direction, turning.far, turning.own_circle);
+    if (!distance) return std::nullopt;
+    ray.from = ray.from + *distance * ray.direction;
+    if (!Turn(turning, ray)) return std::nullopt;
+  }
+  ray.share *= way.compression;
+  return ray;
 }
 
 std::optional<double> DistanceBehind(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
                                      const SpecularRay& ray, ElementId element, bool far) {
-  const RaySeries<1> series{VectorSeries<1>::Constant(ray.from - Point2{}), VectorSeries<1>::Constant(ray.direction)};
-  return Distance(scene, LastOf(receiver, way), series, element, far);
+  const ElementId last = LastOf(receiver, way);
+  const Element& to = scene.element(element);
+  return Distance(to, ray.from, ray.direction, far, IsOwnCircle(scene, last, to));
+}
+
+std::size_t SpecularSight::bytes() const {
+  std::size_t bytes = 0;
+  for (const SpecularPiece& piece : pieces) {
+    bytes += sizeof(SpecularPiece) + sizeof(SpecularWay) + sizeof(Directions) +
+             piece.way->links.size() * sizeof(ChainLink) + piece.way->turnings.size() * sizeof(SpecularWay::Turning);
+  }
+  return bytes;
 }
 
 bool HasSpecular(const Scene& scene) {
@@ -110,11 +175,14 @@ const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
   pieces_.clear();
   lost_ = 0;
   numbers_ = 0;
-  const auto way = std::make_shared<const SpecularWay>();
+  const auto way = std::make_shared<SpecularWay>();
+  way->image = receiver.position;
+  way->tangent = receiver.tangent;
+  way->normal = receiver.normal;
   const auto directions =
       std::make_shared<const Directions>(Directions{-0.5 * std::numbers::pi, 0.5 * std::numbers::pi, false, nullptr});
   Fan(
-      receiver, way, directions, 0, 1, [](double, double) { return true; }, LineFit{});
+      way, directions, 0, 1, [](double, double) { return true; }, LineFit{});
   std::size_t grown = 0;
   while (!beams_.empty()) {
     const Beam beam = beams_.top();
@@ -130,31 +198,31 @@ const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
 }
 
 template <typename Hopeful>
-void SpecularView::Fan(const Receiver& receiver, const std::shared_ptr<const SpecularWay>& way,
+void SpecularView::Fan(const std::shared_ptr<const SpecularWay>& way,
                        const std::shared_ptr<const Directions>& directions, double low, double high,
                        const Hopeful& hopeful, const LineFit& fit) {
   const auto line = [&](double x) -> std::optional<DirectedLine> {
-    const std::optional<SpecularRay> ray = FollowWay(scene_, receiver, *way, directions->At(x));
+    const std::optional<SpecularRay> ray = FollowWay(scene_, *way, directions->At(x));
     if (!ray) return std::nullopt;
     return DirectedLine{ray->direction, Cross(ray->direction, ray->from - Point2{})};
   };
   LineFamily::Fit(
       low, high, line, hopeful,
       [&](const LineFamily& lines) {
-        Push(receiver, {.way = way,
-                        .directions = directions,
-                        .lines = lines,
-                        .begin = lines.begin + LineFamily::kOverlap,
-                        .end = lines.end - LineFamily::kOverlap});
+        Push({.way = way,
+              .directions = directions,
+              .lines = lines,
+              .begin = lines.begin + LineFamily::kOverlap,
+              .end = lines.end - LineFamily::kOverlap});
       },
       fit);
 }
 
-void SpecularView::Push(const Receiver& receiver, Beam beam) {
+void SpecularView::Push(Beam beam) {
   double most = 0;
   for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     const std::optional<SpecularRay> ray =
-        FollowWay(scene_, receiver, *beam.way, beam.directions->At(beam.begin + t * (beam.end - beam.begin)));
+        FollowWay(scene_, *beam.way, beam.directions->At(beam.begin + t * (beam.end - beam.begin)));
     if (ray) most = std::max(most, ray->share);
   }
   const double sines = SinesBetween(beam.directions->At(beam.begin), beam.directions->At(beam.end));
@@ -191,7 +259,7 @@ void SpecularView::Grow(const Receiver& receiver, const Beam& beam) {
 }
 
 std::optional<SpecularView::Met> SpecularView::MetBy(const Receiver& receiver, const Beam& beam, double x) const {
-  const std::optional<SpecularRay> ray = FollowWay(scene_, receiver, *beam.way, beam.directions->At(x));
+  const std::optional<SpecularRay> ray = FollowWay(scene_, *beam.way, beam.directions->At(x));
   if (!ray) return std::nullopt;
   const std::optional<Hit> hit = caster_.ClosestHit({ray->from, LastOf(receiver, *beam.way)}, ray->direction);
   if (!hit) return Met{};
@@ -239,14 +307,16 @@ void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& m
 
 std::optional<double> SpecularView::SquaredCosine(const Receiver& receiver, const Beam& beam, const Met& met,
                                                   bool behind, double x) const {
-  const std::optional<SpecularRay> ray = FollowWay(scene_, receiver, *beam.way, beam.directions->At(x));
+  const std::optional<SpecularRay> ray = FollowWay(scene_, *beam.way, beam.directions->At(x));
   if (!ray) return std::nullopt;
   const std::optional<double> distance = DistanceBehind(scene_, receiver, *beam.way, *ray, met.element, met.far);
   if (!distance) return std::nullopt;
   const Element& element = scene_.element(met.element);
-  const VectorSeries<1> place = VectorSeries<1>::Constant(ray->from + *distance * ray->direction - Point2{});
-  const double sine = Cross(FrontOn(element, place).Value(), ray->direction) /
-                      (behind ? IndexRatio(scene_.curve(element.curve).material, met.side) : 1);
+  const Vector2 front = element.kind == Element::Kind::kSegment
+                            ? FrontOf(element)
+                            : FrontAt(element, ray->from + *distance * ray->direction);
+  const double sine =
+      Cross(front, ray->direction) / (behind ? IndexRatio(scene_.curve(element.curve).material, met.side) : 1);
   return (1 - sine) * (1 + sine);
 }
 
@@ -276,13 +346,33 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
   }
   auto way = std::make_shared<SpecularWay>(*beam.way);
   way->links.push_back({met.element, met.far, crosses});
-  way->straight &= element.kind == Element::Kind::kSegment && std::holds_alternative<Mirror>(curve.material);
+  const bool plane_mirror = element.kind == Element::Kind::kSegment && std::holds_alternative<Mirror>(curve.material);
+  const Vector2 front = element.kind == Element::Kind::kSegment ? FrontOf(element) : Vector2{};
+  way->straight &= plane_mirror;
+  if (way->straight) {
+    const auto reflected = [&](Vector2 v) { return v - (2 * Dot(front, v)) * front; };
+    way->image = element.a + reflected(way->image - element.a);
+    way->tangent = reflected(way->tangent), way->normal = reflected(way->normal);
+  } else {
+    const auto* glass = std::get_if<Dielectric>(&curve.material);
+    const double ior = glass ? glass->ior : 1;
+    way->turnings.push_back({&element, front, ior, 1 / ior, glass != nullptr, met.far, crosses,
+                             IsOwnCircle(scene_, LastOf(receiver, *beam.way), element)});
+  }
   if (crosses) {
     way->compression /= ratio;
   } else {
     way->tint = way->tint * curve.reflectance;
   }
   const std::shared_ptr<const SpecularWay> shared = way;
+  if (plane_mirror) {
+    Push({.way = shared,
+          .directions = beam.directions,
+          .lines = beam.lines.Reflected(element.a, front),
+          .begin = begin,
+          .end = end});
+    return;
+  }
   // Whether what follows moves as a root there.
   const auto bends = [&](double x) {
     return SquaredCosine(receiver, beam, met, false, x).value_or(0) < kGrazing ||
@@ -305,7 +395,9 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
   // What carries little need not be known that well.
   fit.tolerance = std::clamp(kFit * options_.least_share / (beam.share * shared->tint.Max()), kBestFit, kWorstFit);
   fit.least_part = std::min(options_.least_share / most, 1e-3);
-  Fan(receiver, shared, directions, eased ? 0 : begin, eased ? 1 : end, hopeful, fit);
+  // Nor better than directions are.
+  fit.shift = [&](double x) { return kSameDirection / std::max(directions->Slope(x), kSameDirection); };
+  Fan(shared, directions, eased ? 0 : begin, eased ? 1 : end, hopeful, fit);
   // What was given up beside where rays begin to fail.
   if (some_fail) lost_ += 2 * fit.least_part * most;
 }

@@ -25,6 +25,21 @@ struct SpecularWay {
   // (THEORY 17 A6).
   double compression = 1;
   bool straight = true;  // Plane mirrors alone.
+  // The receiver as plane mirrors show it: those of the first links that are, in a row.
+  Point2 image;
+  Vector2 tangent, normal;
+  // Of the links after them, what it takes to follow rays.
+  struct Turning {
+    const Element* element = nullptr;
+    Vector2 front;  // Unit normal of a segment.
+    double ior = 1;
+    double inverse_ior = 1;
+    bool glass = false;
+    bool far = false;
+    bool crosses = false;
+    bool own_circle = false;  // Rays come from the circle of the same arc.
+  };
+  std::vector<Turning> turnings;
 };
 
 // Where a ray from the receiver is behind the last link, and how much of the radiance that comes from there reaches the
@@ -37,8 +52,7 @@ struct SpecularRay {
 
 // Of the direction theta, from the receiver's normal toward its tangent. Absent if it misses a link's line or circle,
 // or is totally reflected where it should cross.
-std::optional<SpecularRay> FollowWay(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
-                                     double theta);
+std::optional<SpecularRay> FollowWay(const Scene& scene, const SpecularWay& way, double theta);
 
 // The way that a ray goes on to the line or circle of what it meets, `far` as in ChainLink.
 std::optional<double> DistanceBehind(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
@@ -75,6 +89,15 @@ struct SpecularPiece {
   double end = 0;
 };
 
+// What is seen from a point over mirrors and through glass.
+struct SpecularSight {
+  std::vector<SpecularPiece> pieces;
+  double lost = 0;  // What else could have come: irradiance per radiance.
+
+  // About so much.
+  std::size_t bytes() const;
+};
+
 // Whether a curve of the scene is a mirror or glass.
 bool HasSpecular(const Scene& scene);
 // Whether all that reflects is Lambertian, a mirror or glass, and what is seen over these can be followed: there are no
@@ -94,6 +117,8 @@ class SpecularView {
  public:
   // The caster must outlive this.
   SpecularView(const RayCaster& caster, const SpecularViewOptions& options);
+
+  void set_least_share(double least_share) { options_.least_share = least_share; }
 
   // What emits or reflects by Lambertian curves, and the environment, over at least one link. In no order that means
   // anything. Valid until the next call.
@@ -138,10 +163,9 @@ class SpecularView {
                                                                      const Met& met, double from, double to) const;
   // Pushes the beams of a way's rays between two numbers of directions; `hopeful` as in LineFamily::Fit.
   template <typename Hopeful>
-  void Fan(const Receiver& receiver, const std::shared_ptr<const SpecularWay>& way,
-           const std::shared_ptr<const Directions>& directions, double low, double high, const Hopeful& hopeful,
-           const LineFit& fit);
-  void Push(const Receiver& receiver, Beam beam);
+  void Fan(const std::shared_ptr<const SpecularWay>& way, const std::shared_ptr<const Directions>& directions,
+           double low, double high, const Hopeful& hopeful, const LineFit& fit);
+  void Push(Beam beam);
 
   const RayCaster& caster_;
   const Scene& scene_;

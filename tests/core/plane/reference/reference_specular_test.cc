@@ -97,6 +97,47 @@ TEST(ReferenceSpecularTest, AFurnaceWithABallOfGlassIsLitAlikeEverywhere) {
   ExpectFurnace(maker, 0.5, 1e-2);
 }
 
+// A narrow beam through a prism: most of the wall is so dim that what ways could have brought that were not followed
+// matters, so these are followed further, until the bound is as small as wanted.
+TEST(ReferenceSpecularTest, FollowsWaysAsFarAsTheTargetNeeds) {
+  SceneMaker maker;
+  maker.Polyline("prism", {{-0.55, -0.35}, {0, 0.6}, {0.55, -0.35}}, true, Glass(1.5));
+  maker.Segment("lamp", {-2.2846, -0.4876}, {-2.2463, -0.6013}, {.radiance = {60}});
+  maker.Polyline("tube",
+                 {{-1.0141, -0.1869}, {-2.2463, -0.6013}, {-2.3602, -0.5764}, {-2.2846, -0.4876}, {-1.0524, -0.0732}},
+                 false, {});
+  maker.Segment("wall", {1.8, -1}, {1.8, 1}, {.reflectance = {0.8}});
+  maker.Probe("wall", 16);
+  const auto scene = maker.Build();
+  const SolvedReference fine = SolveReference(scene, Options(1e-6));
+  EXPECT_EQ(fine.state, ReferenceSolver::State::kReached) << fine.relative_error;
+  for (const double target : {1e-1, 1e-2, 1e-3}) {
+    const SolvedReference coarse = SolveReference(scene, Options(target));
+    EXPECT_EQ(coarse.state, ReferenceSolver::State::kReached) << coarse.relative_error;
+    for (std::size_t i = 0; i < fine.values.size(); ++i) {
+      const ExactValue &a = coarse.values[i], &b = fine.values[i];
+      EXPECT_LE(std::abs(a.irradiance[0] - b.irradiance[0]), a.irradiance_error[0] + b.irradiance_error[0]) << i;
+    }
+  }
+}
+
+// The sum over all images in two plane mirrors, each of which dims the lamp once more.
+TEST(ReferenceSpecularTest, ParallelMirrorsShowARowOfLamps) {
+  SceneMaker maker;
+  maker.Segment("lower", {-50, 0}, {50, 0}, MirrorOf(0.9)).Segment("upper", {50, 1}, {-50, 1}, MirrorOf(0.9));
+  maker.Segment("lamp", {-1, 0.6}, {-1, 0.4}, {.radiance = {1}});
+  maker.PointProbe({0, 0.5}, {-1, 0});
+  const auto scene = maker.Build();
+  double expected = 0;
+  const auto sine = [](double y) { return y / std::hypot(1, y); };
+  for (int k = -200; k <= 200; ++k) expected += std::pow(0.9, std::abs(k)) * (sine(k + 0.1) - sine(k - 0.1));
+  const SolvedReference solved = SolveReference(scene, Options(1e-7));
+  EXPECT_EQ(solved.state, ReferenceSolver::State::kReached) << solved.relative_error;
+  ASSERT_EQ(solved.values.size(), 1u);
+  EXPECT_NEAR(solved.values[0].irradiance[0], expected, 1e-9 * expected);
+  EXPECT_LE(std::abs(solved.values[0].irradiance[0] - expected), solved.values[0].irradiance_error[0] + 1e-12);
+}
+
 // Under water of index 1.5, beneath a sky of radiance 1, radiance is 1.5 where the sky is seen (THEORY 17 A6), but for
 // what the surface reflects back; what it reflects totally is dark.
 TEST(ReferenceSpecularTest, RadianceIsLargerWhereLightIsSlower) {
