@@ -79,7 +79,8 @@ std::string GranteeOf(const Request& request) {
   }
 }
 
-inline grpc::ByteBuffer ToAnswer(grpc::ByteBuffer bytes) { return bytes; }
+// A copy of the bytes shares them.
+inline grpc::ByteBuffer ToAnswer(const grpc::ByteBuffer& bytes) { return bytes; }
 inline grpc::ByteBuffer ToAnswer(const google::protobuf::MessageLite& message) { return ToBytes(message); }
 
 // A unary call whose caller is known, with all that its answer takes.
@@ -101,8 +102,8 @@ struct AdmittedCall {
     return parsed.ok();
   }
   void Finish(const Request& request) const {
-    auto response = work(caller, request);
-    if (response.ok()) *answer = ToAnswer(*std::move(response));
+    const auto response = work(caller, request);
+    if (response.ok()) *answer = ToAnswer(*response);
     const grpc::Status status = ToGrpcStatus(response.status());
     if (logged || CallTelemetry::IsDenied(status)) Note(request, response);
     reactor->Finish(status);
@@ -127,14 +128,14 @@ template <class Request, class LaneOf, class Work>
 grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* context, const grpc::ByteBuffer* bytes,
                                  grpc::ByteBuffer* answer, LaneOf lane, Work work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  static const std::string& request_name = Request::descriptor()->name();
-  static const bool only_looks = CallTelemetry::OnlyLooks(request_name);
+  const std::string& request_name = Request::descriptor()->name();
+  static const bool kOnlyLooks = CallTelemetry::OnlyLooks(request_name);
   absl::StatusOr<Caller> caller = backend.guard.Authorize(*context, request_name);
   if (!caller.ok()) {
     reactor->Finish(ToGrpcStatus(caller.status()));
     return reactor;
   }
-  const bool logged = backend.telemetry.LogsAll(only_looks);
+  const bool logged = backend.telemetry.LogsAll(kOnlyLooks);
   if (logged) backend.telemetry.NoteCaller(*context, caller->name);
   AdmittedCall<Request, Work> call{
       backend, context, reactor, answer, *std::move(caller), logged, std::move(work), backend.calls.Enter()};
