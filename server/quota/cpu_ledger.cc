@@ -10,6 +10,10 @@ constexpr std::int64_t kDaysKept = 400;  // For who asks what a term has cost.
 
 std::int64_t DayOf(CpuLedger::WallTime time) { return std::chrono::floor<Day>(time.time_since_epoch()).count(); }
 
+CpuLedger::WallTime EndOf(std::int64_t day) {
+  return CpuLedger::WallTime(std::chrono::duration_cast<CpuLedger::WallTime::duration>(Day(day + 1)));
+}
+
 }  // namespace
 
 CpuLedger::CpuLedger(Storage* storage, Options options) : storage_(storage), options_(std::move(options)) {
@@ -30,12 +34,11 @@ void CpuLedger::Close() {
 
 std::int64_t CpuLedger::Today() const { return DayOf(options_.now()); }
 
-CpuLedger::WallTime CpuLedger::EndOfToday() const {
-  return WallTime(std::chrono::duration_cast<WallTime::duration>(Day(Today() + 1)));
-}
+CpuLedger::WallTime CpuLedger::EndOfToday() const { return EndOf(Today()); }
 
 std::chrono::milliseconds CpuLedger::UntilTomorrow() const {
-  return std::chrono::ceil<std::chrono::milliseconds>(EndOfToday() - options_.now());
+  const WallTime now = options_.now();  // Of two looks, the second may be tomorrow's.
+  return std::chrono::ceil<std::chrono::milliseconds>(EndOf(DayOf(now)) - now);
 }
 
 void CpuLedger::TurnToToday() {

@@ -40,7 +40,7 @@ class QuotaTable {
   absl::Status Set(std::string_view text);
 
  private:
-  std::array<Quotas, 4> quotas_;
+  std::array<Quotas, kRoles> quotas_;
 };
 
 // The names of limits as Set takes them, in the order of Quotas: "jobs, ...".

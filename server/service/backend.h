@@ -14,6 +14,7 @@
 #include "server/service/calls_under_way.h"
 #include "server/service/guard.h"
 #include "server/service/job_access.h"
+#include "server/service/job_messages.h"
 #include "server/service/limits.h"
 #include "server/service/page_tokens.h"
 #include "server/service/scene_cache.h"
@@ -51,6 +52,7 @@ struct Backend {
   const std::string webhook_key;  // See WebhookOutbox.
   std::atomic<bool> draining = false;
   CallsUnderWay calls = {};
+  JobMessages job_messages = {};
   const PageTokens page_tokens = {};
 };
 

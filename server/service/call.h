@@ -79,70 +79,90 @@ std::string GranteeOf(const Request& request) {
   }
 }
 
-// Answers a unary call with `work(caller, request)`, a StatusOr<Response>, run in `lane(caller, request)`, or
-// `lane(request)` where the caller does not matter.
+// A copy of the bytes shares them.
+inline grpc::ByteBuffer ToAnswer(const grpc::ByteBuffer& bytes) { return bytes; }
+inline grpc::ByteBuffer ToAnswer(const google::protobuf::MessageLite& message) { return ToBytes(message); }
+
+// A unary call whose caller is known, with all that its answer takes.
+template <class Request, class Work>
+struct AdmittedCall {
+  Backend& backend;
+  grpc::CallbackServerContext* context;
+  grpc::ServerUnaryReactor* reactor;
+  grpc::ByteBuffer* answer;
+  Caller caller;
+  bool logged;  // Whatever the answer.
+  Work work;
+  CallsUnderWay::Ticket ticket;
+
+  // Whether the bytes are a request; else that is the answer.
+  bool Parse(const grpc::ByteBuffer& bytes, Request& request) const {
+    const absl::Status parsed = FromBytes(bytes, request);
+    if (!parsed.ok()) reactor->Finish(ToGrpcStatus(parsed));
+    return parsed.ok();
+  }
+  void Finish(const Request& request) const {
+    const auto response = work(caller, request);
+    if (response.ok()) *answer = ToAnswer(*response);
+    const grpc::Status status = ToGrpcStatus(response.status());
+    if (logged || CallTelemetry::IsDenied(status)) Note(request, response);
+    reactor->Finish(status);
+  }
+
+ private:
+  template <class Response>
+  void Note(const Request& request, const Response& response) const {
+    backend.telemetry.NoteCaller(*context, caller.name);
+    if (const std::string grantee = GranteeOf(request); !grantee.empty()) {
+      backend.telemetry.NoteGrantee(*context, grantee);
+    }
+    if (const std::string name = ResourceOf(request, response); !name.empty()) {
+      backend.telemetry.NoteResource(*context, name);
+    }
+  }
+};
+
+// Answers a unary call with `work(caller, request)`, a StatusOr of a message or of a serialised one, run in
+// `lane(caller, request)`, or `lane(request)` where the caller does not matter.
 template <class Request, class LaneOf, class Work>
 grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* context, const grpc::ByteBuffer* bytes,
                                  grpc::ByteBuffer* answer, LaneOf lane, Work work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   const std::string& request_name = Request::descriptor()->name();
+  static const bool kOnlyLooks = CallTelemetry::OnlyLooks(request_name);
   absl::StatusOr<Caller> caller = backend.guard.Authorize(*context, request_name);
   if (!caller.ok()) {
     reactor->Finish(ToGrpcStatus(caller.status()));
     return reactor;
   }
-  const bool logged = backend.telemetry.LogsAll(request_name);
+  const bool logged = backend.telemetry.LogsAll(kOnlyLooks);
   if (logged) backend.telemetry.NoteCaller(*context, caller->name);
-  const auto lane_of = [&lane, &caller](const Request& request) {
-    if constexpr (std::invocable<LaneOf, const Caller&, const Request&>) {
-      return lane(*caller, request);
-    } else {
-      return lane(request);
-    }
-  };
-  const auto finish = [&backend, context, reactor, answer, work, logged, caller = *caller,
-                       ticket = backend.calls.Enter()](const Request& request) {
-    auto response = work(caller, request);
-    if (response.ok()) *answer = ToBytes(*response);
-    const grpc::Status status = ToGrpcStatus(response.status());
-    if (logged || CallTelemetry::IsDenied(status)) {
-      backend.telemetry.NoteCaller(*context, caller.name);
-      if (const std::string grantee = GranteeOf(request); !grantee.empty()) {
-        backend.telemetry.NoteGrantee(*context, grantee);
-      }
-      if (const std::string name = ResourceOf(request, response); !name.empty()) {
-        backend.telemetry.NoteResource(*context, name);
-      }
-    }
-    reactor->Finish(status);
-  };
-  const auto parse = [reactor, bytes](Request& request) {
-    const absl::Status parsed = FromBytes(*bytes, request);
-    if (!parsed.ok()) reactor->Finish(ToGrpcStatus(parsed));
-    return parsed.ok();
-  };
+  AdmittedCall<Request, Work> call{
+      backend, context, reactor, answer, *std::move(caller), logged, std::move(work), backend.calls.Enter()};
   const std::size_t size = bytes->Length();
-  absl::Status posted;
   if (size > kMaxQuickBytes) {
-    posted = PostTo(backend.slow, size, [parse, finish] {
+    const absl::Status posted = PostTo(backend.slow, size, [call, bytes] {
       Request request;
-      if (parse(request)) finish(request);
+      if (call.Parse(*bytes, request)) call.Finish(request);
     });
-  } else {
-    auto request = std::make_shared<Request>();
-    if (!parse(*request)) return reactor;
-    switch (lane_of(*request)) {
-      case Lane::kInline:
-        finish(*request);
-        break;
-      case Lane::kQuick:
-        posted = PostTo(backend.quick, size, [request, finish] { finish(*request); });
-        break;
-      case Lane::kSlow:
-        posted = PostTo(backend.slow, size, [request, finish] { finish(*request); });
-        break;
-    }
+    if (!posted.ok()) reactor->Finish(ToGrpcStatus(posted));
+    return reactor;
   }
+  Request request;
+  if (!call.Parse(*bytes, request)) return reactor;
+  Lane where;
+  if constexpr (std::invocable<LaneOf, const Caller&, const Request&>) {
+    where = lane(call.caller, request);
+  } else {
+    where = lane(request);
+  }
+  if (where == Lane::kInline) {
+    call.Finish(request);
+    return reactor;
+  }
+  const absl::Status posted = PostTo(
+      where == Lane::kQuick ? backend.quick : backend.slow, size,
+      [call = std::move(call), request = std::make_shared<Request>(std::move(request))] { call.Finish(*request); });
   if (!posted.ok()) reactor->Finish(ToGrpcStatus(posted));
   return reactor;
 }

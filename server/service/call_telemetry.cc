@@ -38,17 +38,11 @@ std::string ReasonOrCode(const grpc::Status& status) {
   return absl::StatusCodeToString(static_cast<absl::StatusCode>(status.error_code()));
 }
 
-// Get, List, Watch, Explain, Validate: what only looks. Of a request or a method.
-bool OnlyLooks(std::string_view name) {
-  constexpr std::array<std::string_view, 5> kLooks = {"Get", "List", "Watch", "Explain", "Validate"};
-  return std::any_of(kLooks.begin(), kLooks.end(), [&](std::string_view verb) { return name.starts_with(verb); });
-}
-
 class CallInterceptor final : public grpc::experimental::Interceptor {
  public:
   CallInterceptor(CallTelemetry& telemetry, grpc::experimental::ServerRpcInfo& info)
       : telemetry_(telemetry), info_(info), start_(std::chrono::steady_clock::now()) {
-    call_.method = info.method();
+    call_.method = telemetry.Find(info.method());
   }
 
   void Intercept(InterceptorBatchMethods* methods) override {
@@ -60,30 +54,31 @@ class CallInterceptor final : public grpc::experimental::Interceptor {
         call_.request_id.assign(given->second.data(), given->second.size());
       }
     }
+    const bool ends = methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS);
+    if (ends) call_.status = methods->GetSendStatus();
     if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_INITIAL_METADATA)) {
-      if (auto* metadata = methods->GetSendInitialMetadata(); metadata != nullptr) {
-        metadata->emplace(kRequestId, RequestId());
-      }
+      NameCall(ends);
+      auto* metadata = methods->GetSendInitialMetadata();
+      if (metadata != nullptr && !call_.request_id.empty()) metadata->emplace(kRequestId, call_.request_id);
     }
     if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_MESSAGE)) {
       if (auto* bytes = methods->GetSerializedSendMessage(); bytes != nullptr) {
         call_.sent_bytes += bytes->Length();
       }
     }
-    if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS)) End(methods->GetSendStatus());
+    if (ends) End();
     methods->Proceed();
   }
 
  private:
-  const std::string& RequestId() {
-    if (call_.request_id.empty()) call_.request_id = telemetry_.NextRequestId();
-    return call_.request_id;
+  void NameCall(bool ends) {
+    if (!call_.request_id.empty() || !telemetry_.MayLog(call_.method, ends ? &call_.status : nullptr)) return;
+    call_.request_id = telemetry_.NextRequestId();
   }
 
-  void End(grpc::Status status) {
-    call_.status = std::move(status);
+  void End() {
     call_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    RequestId();
+    NameCall(true);
     telemetry_.Ended(info_.server_context(), call_);
   }
 
@@ -116,7 +111,8 @@ CallTelemetry::CallTelemetry(Metrics& metrics, JsonLog* calls, JsonLog* audit, c
     const auto* service = google::protobuf::DescriptorPool::generated_pool()->FindServiceByName(name);
     for (int i = 0; i < service->method_count(); ++i) {
       const std::string path = "/" + service->full_name() + "/" + service->method(i)->name();
-      methods_[path] = &metrics.MethodOf(path.substr(kPackage.size()));
+      const std::string method = path.substr(kPackage.size());
+      methods_[path] = {method, &metrics.MethodOf(method), OnlyLooks(service->method(i)->name())};
     }
   }
 }
@@ -125,8 +121,20 @@ CallTelemetry::Shard& CallTelemetry::ShardOf(const grpc::ServerContextBase* cont
   return shards_[(reinterpret_cast<std::uintptr_t>(context) >> 6) % shards_.size()];
 }
 
-bool CallTelemetry::LogsAll(std::string_view request) const {
-  return calls_ != nullptr || (audit_ != nullptr && !OnlyLooks(request));
+const CallTelemetry::Method* CallTelemetry::Find(std::string_view path) const {
+  const auto known = methods_.find(path);
+  return known == methods_.end() ? nullptr : &known->second;
+}
+
+bool CallTelemetry::MayLog(const Method* method, const grpc::Status* status) const {
+  if (method == nullptr) return false;
+  if (calls_ != nullptr) return true;
+  return audit_ != nullptr && (!method->only_looks || status == nullptr || IsDenied(*status));
+}
+
+bool CallTelemetry::OnlyLooks(std::string_view name) {
+  constexpr std::array<std::string_view, 5> kLooks = {"Get", "List", "Watch", "Explain", "Validate"};
+  return std::any_of(kLooks.begin(), kLooks.end(), [&](std::string_view verb) { return name.starts_with(verb); });
 }
 
 void CallTelemetry::NoteCaller(const grpc::ServerContextBase& context, const std::string& caller) {
@@ -159,9 +167,8 @@ std::string CallTelemetry::NextRequestId() { return id_prefix_ + std::to_string(
 void CallTelemetry::Ended(const grpc::ServerContextBase* context, const Call& call) {
   const auto code = static_cast<absl::StatusCode>(call.status.error_code());
   const std::string reason = ReasonOrCode(call.status);
-  const auto known = methods_.find(call.method);
-  const bool ours = known != methods_.end();
-  metrics_.CallEnded(ours ? *known->second : other_methods_, code, ours ? reason : "", call.seconds,
+  const bool ours = call.method != nullptr;
+  metrics_.CallEnded(ours ? *call.method->metrics : other_methods_, code, ours ? reason : "", call.seconds,
                      static_cast<double>(call.sent_bytes));
   if (!logs()) return;
   Notes notes;
@@ -170,15 +177,14 @@ void CallTelemetry::Ended(const grpc::ServerContextBase* context, const Call& ca
     const std::lock_guard lock(shard.mutex);
     if (auto node = shard.notes.extract(context)) notes = std::move(node.mapped());
   }
-  const std::string_view method = call.method;
-  const bool changes =
-      !OnlyLooks(method.substr(method.rfind('/') + 1)) && (!notes.resource.empty() || !call.status.ok());
+  if (!ours) return;
+  const bool changes = !call.method->only_looks && (!notes.resource.empty() || !call.status.ok());
   const bool audited = audit_ != nullptr && (changes || IsDenied(call.status));
-  if (!ours || (!audited && calls_ == nullptr)) return;
+  if (!audited && calls_ == nullptr) return;
   JsonLog::Line line;
   line["request"] = call.request_id;
   line["caller"] = notes.caller;
-  line["method"] = known->first.substr(kPackage.size());
+  line["method"] = call.method->name;
   if (!notes.resource.empty()) line["resource"] = notes.resource;
   if (!notes.grantee.empty()) line["grantee"] = notes.grantee;
   line["code"] = absl::StatusCodeToString(code);

@@ -2,42 +2,49 @@
 #ifndef FLATLIGHT_SERVER_SERVICE_CALLS_UNDER_WAY_H_
 #define FLATLIGHT_SERVER_SERVICE_CALLS_UNDER_WAY_H_
 
+#include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <memory>
-#include <mutex>
-
-#include "absl/base/thread_annotations.h"
+#include <thread>
+#include <utility>
 
 namespace flatlight {
 
 // Counts calls, so that a server that goes down knows when the last one has its answer. (gRPC's own shutdown also waits
-// for idle connections, whose clients may not be listening.)
+// for idle connections, whose clients may not be listening.) Every call asks: it costs neither a lock nor memory.
 class CallsUnderWay {
  public:
-  // The call is under way as long as a copy of this lives.
-  using Ticket = std::shared_ptr<void>;
+  // A call is under way as long as a copy of its ticket lives; all tickets end before this.
+  class Ticket {
+   public:
+    Ticket(const Ticket& other) : Ticket(other.calls_) {}
+    Ticket(Ticket&& other) noexcept : calls_(std::exchange(other.calls_, nullptr)) {}
+    Ticket& operator=(const Ticket&) = delete;
+    Ticket& operator=(Ticket&&) = delete;
+    ~Ticket() {
+      if (calls_ != nullptr) --calls_->count_;
+    }
 
-  Ticket Enter() {
-    const std::lock_guard lock(mutex_);
-    ++count_;
-    return Ticket(this, [](void* calls) { static_cast<CallsUnderWay*>(calls)->Leave(); });
-  }
+   private:
+    friend class CallsUnderWay;
+    explicit Ticket(CallsUnderWay* calls) : calls_(calls) {
+      if (calls_ != nullptr) ++calls_->count_;
+    }
 
-  void AwaitNone(std::chrono::milliseconds at_most) {
-    std::unique_lock lock(mutex_);
-    none_.wait_for(lock, at_most, [this] { return count_ == 0; });
+    CallsUnderWay* calls_;  // Null: moved away.
+  };
+
+  Ticket Enter() { return Ticket(this); }
+
+  // Looks every millisecond: it is done once, and what calls would have to do to wake it they would do each time.
+  void AwaitNone(std::chrono::milliseconds at_most) const {
+    const auto end = std::chrono::steady_clock::now() + at_most;
+    while (count_ > 0 && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
 
  private:
-  void Leave() {
-    const std::lock_guard lock(mutex_);
-    if (--count_ == 0) none_.notify_all();
-  }
-
-  std::mutex mutex_;
-  std::condition_variable none_;
-  int count_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::atomic<int> count_ = 0;
 };
 
 }  // namespace flatlight

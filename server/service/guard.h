@@ -43,6 +43,7 @@ class Guard {
   // Changes whenever Recheck may have another answer (and when it has not: with any change of the users' database).
   std::int64_t UsersVersion() const;
 
+  const Quotas& QuotasOf(Role role) const { return quotas_.Of(role); }
   const Quotas& QuotasOf(const Caller& caller) const { return quotas_.Of(caller.role); }
   // Of who made a job in a process before.
   const Quotas& QuotasOf(const std::string& owner) const;

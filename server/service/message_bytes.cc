@@ -3,18 +3,32 @@
 
 #include <grpc/slice.h>
 
+#include <algorithm>
+#include <cstdint>
+
 #include "grpcpp/support/proto_buffer_reader.h"
-#include "grpcpp/support/slice.h"
 #include "server/store/error.h"
 
 namespace flatlight {
 
-grpc::ByteBuffer ToBytes(const google::protobuf::MessageLite& message) {
-  // Into gRPC's own memory: with every call.
-  const std::size_t size = message.ByteSizeLong();
-  grpc_slice bytes = grpc_slice_malloc(size);
-  message.SerializeWithCachedSizesToArray(GRPC_SLICE_START_PTR(bytes));
-  const grpc::Slice slice(bytes, grpc::Slice::STEAL_REF);
+namespace {
+
+// Into gRPC's own memory: with every call.
+grpc::Slice Serialise(std::string_view part, const google::protobuf::MessageLite& message) {
+  grpc_slice bytes = grpc_slice_malloc(part.size() + message.ByteSizeLong());
+  std::uint8_t* const start = GRPC_SLICE_START_PTR(bytes);
+  message.SerializeWithCachedSizesToArray(std::copy(part.begin(), part.end(), start));
+  return {bytes, grpc::Slice::STEAL_REF};
+}
+
+}  // namespace
+
+grpc::Slice ToSlice(const google::protobuf::MessageLite& message) { return Serialise("", message); }
+
+grpc::ByteBuffer ToBytes(const google::protobuf::MessageLite& message) { return ToBytes("", message); }
+
+grpc::ByteBuffer ToBytes(std::string_view part, const google::protobuf::MessageLite& message) {
+  const grpc::Slice slice = Serialise(part, message);
   return {&slice, 1};
 }
 

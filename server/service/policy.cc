@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service/policy.h"
 
-#include <algorithm>
+#include <unordered_map>
 
 #include "server/store/error.h"
 
@@ -56,11 +56,16 @@ const std::vector<PolicyRow>& Policy() {
 }
 
 absl::Status CheckRole(const Caller& caller, std::string_view request) {
-  const auto& rows = Policy();
-  const auto row = std::find_if(rows.begin(), rows.end(), [&](const PolicyRow& r) { return r.request == request; });
-  if (row == rows.end()) return Denied("ROLE_TOO_LOW", "this call is open to nobody");
-  if (caller.role >= row->least) return absl::OkStatus();
-  return Denied("ROLE_TOO_LOW", "this call is for the role " + std::string(RoleName(row->least)) + " and above; " +
+  static const auto kLeast = [] {
+    std::unordered_map<std::string_view, Role> least;
+    for (const PolicyRow& row : Policy()) least[row.request] = row.least;
+    return least;
+  }();
+  const auto found = kLeast.find(request);
+  if (found == kLeast.end()) return Denied("ROLE_TOO_LOW", "this call is open to nobody");
+  const Role least = found->second;
+  if (caller.role >= least) return absl::OkStatus();
+  return Denied("ROLE_TOO_LOW", "this call is for the role " + std::string(RoleName(least)) + " and above; " +
                                     caller.name + " is a " + std::string(RoleName(caller.role)));
 }
 

@@ -19,9 +19,8 @@ std::uint64_t StorageOf(Backend& backend, const std::string& user) {
   return backend.scenes.BytesOf(user) + backend.jobs.StoredBytesOf(user);
 }
 
-v1::Quotas QuotasToProto(Backend& backend, const Caller& caller) {
-  const Quotas& quotas = backend.guard.QuotasOf(caller);
-  v1::Quotas all;
+void FillQuotas(Backend& backend, const Caller& caller, v1::Quotas& all) {
+  const Quotas& quotas = backend.guard.QuotasOf(caller.role);
   all.set_user(caller.name);
   all.set_role(std::string(RoleName(caller.role)));
   Fill(static_cast<double>(backend.scheduler.JobsOf(caller.name)), quotas.jobs, *all.mutable_jobs());
@@ -34,7 +33,6 @@ v1::Quotas QuotasToProto(Backend& backend, const Caller& caller) {
     all.mutable_requests()->set_limit(RequestsAtOnce(*quotas.requests));
     all.set_requests_per_second(*quotas.requests);
   }
-  return all;
 }
 
 }  // namespace flatlight

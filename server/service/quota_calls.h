@@ -13,7 +13,7 @@ namespace flatlight {
 // How many bytes the scenes and jobs of a user take. From memory.
 std::uint64_t StorageOf(Backend& backend, const std::string& user);
 // What the caller may have, and has. From memory.
-v1::Quotas QuotasToProto(Backend& backend, const Caller& caller);
+void FillQuotas(Backend& backend, const Caller& caller, v1::Quotas& all);
 
 }  // namespace flatlight
 

@@ -2,6 +2,7 @@
 #include "server/service/render_calls.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <set>
 #include <string>
@@ -14,6 +15,7 @@
 #include "server/service/job_access.h"
 #include "server/service/job_convert.h"
 #include "server/service/known_records.h"
+#include "server/service/message_bytes.h"
 #include "server/service/page.h"
 #include "server/service/quota_calls.h"
 #include "server/service/scene_source.h"
@@ -140,15 +142,14 @@ absl::StatusOr<v1::Job> CreatedJob(Backend& backend, const JobRecord& record) {
   return job;
 }
 
-// With its shares and its webhook, which are for those who may change them.
-absl::StatusOr<v1::Job> SharedJob(Backend& backend, const Caller& caller, const JobRecord& record) {
-  v1::Job job = WholeJob(record);
-  if (RightByRole(caller, *record.spec) < JobRight::kOwn) return job;
-  if (absl::Status told = TellWebhook(backend.webhooks, *record.spec, job); !told.ok()) return told;
-  const auto grants = backend.jobs.GrantsOf(record.spec->id);
+// Adds its shares and its webhook, which are for those who may change them.
+absl::Status TellOwner(Backend& backend, const Caller& caller, const JobSpec& spec, v1::Job& job) {
+  if (RightByRole(caller, spec) < JobRight::kOwn) return absl::OkStatus();
+  if (absl::Status told = TellWebhook(backend.webhooks, spec, job); !told.ok()) return told;
+  const auto grants = backend.jobs.GrantsOf(spec.id);
   if (!grants.ok()) return grants.status();
   for (const Grant& grant : *grants) *job.add_shares() = GrantToProto(grant);
-  return job;
+  return absl::OkStatus();
 }
 
 template <class Action>
@@ -158,9 +159,11 @@ absl::StatusOr<v1::Job> ChangeShares(Backend& backend, const Caller& caller, con
   if (!id.ok()) return id.status();
   if (absl::Status allowed = backend.access.CheckRight(caller, JobRight::kOwn, *id); !allowed.ok()) return allowed;
   if (absl::Status changed = action(*id); !changed.ok()) return changed;
-  const auto job = backend.jobs.Get(*id);
-  if (!job.ok()) return job.status();
-  return SharedJob(backend, caller, *job);
+  const auto record = backend.jobs.Get(*id);
+  if (!record.ok()) return record.status();
+  v1::Job job = WholeJob(*record);
+  if (absl::Status told = TellOwner(backend, caller, *record->spec, job); !told.ok()) return told;
+  return job;
 }
 
 template <class Action>
@@ -255,12 +258,16 @@ absl::StatusOr<JobRun::Restored> RestoreJob(Backend& backend, JobArchive& archiv
   return made;
 }
 
-absl::StatusOr<v1::Job> GetJob(Backend& backend, const Caller& caller, const v1::GetJobRequest& request) {
+absl::StatusOr<grpc::ByteBuffer> GetJob(Backend& backend, const Caller& caller, const v1::GetJobRequest& request) {
   const auto id = ParseJobName(request.name());
   if (!id.ok()) return id.status();
   const auto job = backend.access.FindSeen(caller, *id);
   if (!job.ok()) return job.status();
-  return SharedJob(backend, caller, *job);
+  // A message's parts, one behind the other, are the message.
+  v1::Job for_owner;
+  if (absl::Status told = TellOwner(backend, caller, *job->spec, for_owner); !told.ok()) return told;
+  const std::array<grpc::Slice, 2> parts = {backend.job_messages.Of(*job), ToSlice(for_owner)};
+  return grpc::ByteBuffer(parts.data(), parts[1].size() == 0 ? 1 : 2);
 }
 
 absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const Caller& caller,

@@ -4,6 +4,7 @@
 
 #include "absl/status/statusor.h"
 #include "flatlight/v1/render_service.pb.h"
+#include "grpcpp/support/byte_buffer.h"
 #include "server/service/backend.h"
 #include "server/service/scene_source.h"
 #include "server/store/job_archive.h"
@@ -15,7 +16,8 @@ absl::StatusOr<v1::Job> CreateJob(Backend& backend, const Caller& caller, const 
                                   const Proceed& proceed);
 // A job of a process before, made again from what was submitted, with its last checkpoint.
 absl::StatusOr<JobRun::Restored> RestoreJob(Backend& backend, JobArchive& archive, const JobSpec& accepted);
-absl::StatusOr<v1::Job> GetJob(Backend& backend, const Caller& caller, const v1::GetJobRequest& request);
+// A serialised v1::Job.
+absl::StatusOr<grpc::ByteBuffer> GetJob(Backend& backend, const Caller& caller, const v1::GetJobRequest& request);
 absl::StatusOr<v1::ListJobsResponse> ListJobs(Backend& backend, const Caller& caller,
                                               const v1::ListJobsRequest& request);
 absl::StatusOr<v1::Job> CancelJob(Backend& backend, const Caller& caller, const v1::CancelJobRequest& request);

@@ -6,12 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "core/render/plan.h"
 #include "server/convert/result_convert.h"
 #include "server/convert/scene_reader.h"
 #include "server/gallery/gallery.h"
 #include "server/service/job_convert.h"
-#include "server/service/machine.h"
 #include "server/service/page.h"
 #include "server/service/policy.h"
 #include "server/service/quota_calls.h"
@@ -204,38 +202,6 @@ absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const 
     response.set_probe_hash((*scene)->probe_hash());
     *response.mutable_traits() = TraitsToProto((*scene)->traits());
   }
-  return response;
-}
-
-v1::GetCapabilitiesResponse GetCapabilities(Backend& backend, const Caller& caller) {
-  v1::GetCapabilitiesResponse response;
-  response.set_version(backend.version);
-  response.set_api_version("flatlight.v1");
-  for (const std::string& method : MethodNames()) response.add_methods(method);
-  for (const std::string& skip : SkipNames()) response.add_skips(skip);
-  v1::Limits& limits = *response.mutable_limits();
-  limits.set_max_message_bytes(backend.limits.max_message_bytes);
-  limits.set_max_scene_bytes(backend.limits.max_scene_bytes);
-  limits.set_max_scene_depth(kMaxSceneDepth);
-  limits.set_max_curves(backend.limits.max_curves);
-  limits.set_max_probe_points(backend.limits.max_probe_points);
-  limits.set_max_pixels(backend.limits.max_pixels);
-  limits.set_max_running_jobs(backend.limits.max_running_jobs);
-  limits.set_max_jobs(backend.limits.max_jobs);
-  limits.set_max_jobs_per_user(backend.guard.QuotasOf(caller).jobs.value_or(backend.limits.max_jobs));
-  limits.set_max_watches(backend.limits.max_watches);
-  response.set_threads(static_cast<std::uint32_t>(backend.threads));
-  response.set_processor(ProcessorModel());
-  response.set_processors(backend.processors);
-  *response.mutable_quotas() = QuotasToProto(backend, caller);
-  for (std::size_t i = 0; i < kJobClasses; ++i) {
-    v1::Retention& retention = *response.add_retention();
-    const auto job_class = static_cast<JobClass>(i);
-    retention.set_job_class(JobClassToProto(job_class));
-    if (const auto kept = backend.retention.Of(job_class))
-      retention.set_keep_seconds(static_cast<double>(kept->count()));
-  }
-  for (const std::string& host : backend.webhook_rules.hosts()) response.add_webhook_hosts(host);
   return response;
 }
 

@@ -4,13 +4,12 @@
 
 #include "absl/status/statusor.h"
 #include "flatlight/v1/scene_service.pb.h"
-#include "flatlight/v1/server_service.pb.h"
 #include "server/service/backend.h"
 #include "server/service/scene_source.h"
 
 namespace flatlight {
 
-// The calls of SceneService and ServerService as plain functions.
+// The calls of SceneService as plain functions.
 absl::StatusOr<v1::UploadSceneResponse> UploadScene(Backend& backend, const Caller& caller,
                                                     const v1::UploadSceneRequest& request);
 absl::StatusOr<v1::GetSceneResponse> GetScene(Backend& backend, const Caller& caller,
@@ -25,7 +24,6 @@ absl::StatusOr<v1::SceneInfo> UnshareScene(Backend& backend, const Caller& calle
 absl::StatusOr<v1::ValidateSceneResponse> ValidateScene(Backend& backend, const Caller& caller,
                                                         const v1::ValidateSceneRequest& request,
                                                         const Proceed& proceed);
-v1::GetCapabilitiesResponse GetCapabilities(Backend& backend, const Caller& caller);
 
 }  // namespace flatlight
 

@@ -72,11 +72,10 @@ grpc::ServerUnaryReactor* SceneService::ValidateScene(Context* context, const By
 
 grpc::ServerUnaryReactor* ServerService::GetCapabilities(grpc::CallbackServerContext* context,
                                                          const grpc::ByteBuffer* request, grpc::ByteBuffer* response) {
-  return Answer<v1::GetCapabilitiesRequest>(
-      backend_, context, request, response, kInlineLane,
-      [this](const Caller& caller, const v1::GetCapabilitiesRequest&) {
-        return absl::StatusOr<v1::GetCapabilitiesResponse>(flatlight::GetCapabilities(backend_, caller));
-      });
+  return Answer<v1::GetCapabilitiesRequest>(backend_, context, request, response, kInlineLane,
+                                            [this](const Caller& caller, const v1::GetCapabilitiesRequest&) {
+                                              return absl::StatusOr<grpc::ByteBuffer>(capabilities_.For(caller));
+                                            });
 }
 
 grpc::ServerUnaryReactor* ServerService::GetActivity(grpc::CallbackServerContext* context,

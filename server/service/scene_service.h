@@ -5,6 +5,7 @@
 #include "flatlight/v1/scene_service.grpc.pb.h"
 #include "flatlight/v1/server_service.grpc.pb.h"
 #include "server/service/backend.h"
+#include "server/service/capabilities.h"
 
 namespace flatlight {
 
@@ -38,7 +39,7 @@ class ServerService final
           v1::ServerService::WithRawCallbackMethod_GetActivity<
               v1::ServerService::WithRawCallbackMethod_GetWebhookSecret<v1::ServerService::Service>>> {
  public:
-  explicit ServerService(Backend& backend) : backend_(backend) {}
+  explicit ServerService(Backend& backend) : backend_(backend), capabilities_(backend) {}
 
   grpc::ServerUnaryReactor* GetCapabilities(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
                                             grpc::ByteBuffer* response) override;
@@ -49,6 +50,7 @@ class ServerService final
 
  private:
   Backend& backend_;
+  const Capabilities capabilities_;
 };
 
 }  // namespace flatlight

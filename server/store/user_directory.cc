@@ -40,12 +40,14 @@ std::int64_t UserDirectory::Version() {
 }
 
 absl::StatusOr<bool> UserDirectory::HasUsers() {
+  if (ever_had_users_) return true;
   const std::lock_guard lock(mutex_);
-  if (has_users_ == true) return true;
   if (absl::Status looked = ForgetWhatChanged(); !looked.ok()) return looked;
   if (has_users_) return *has_users_;
   auto some = UserStore(*database_).HasUsers();
-  if (some.ok()) has_users_ = *some;
+  if (!some.ok()) return some;
+  has_users_ = *some;
+  ever_had_users_ = *some;
   return some;
 }
 

@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_SERVER_STORE_USER_DIRECTORY_H_
 #define FLATLIGHT_SERVER_STORE_USER_DIRECTORY_H_
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -46,6 +47,8 @@ class UserDirectory {
   std::int64_t version_ ABSL_GUARDED_BY(mutex_) = -1;
   std::int64_t unreadable_ ABSL_GUARDED_BY(mutex_) = -1;
   std::optional<bool> has_users_ ABSL_GUARDED_BY(mutex_);
+  std::atomic<bool> ever_had_users_ =
+      false;  // As has_users_, once it is true: asked with every call, without the lock.
   std::unordered_map<std::string, User> by_token_hash_ ABSL_GUARDED_BY(mutex_);
 };
 

@@ -13,7 +13,7 @@
 namespace flatlight {
 namespace {
 
-constexpr std::array<std::pair<Role, std::string_view>, 4> kRoles = {{
+constexpr std::array<std::pair<Role, std::string_view>, kRoles> kRoleNames = {{
     {Role::kStudent, "student"},
     {Role::kGrader, "grader"},
     {Role::kInstructor, "instructor"},
@@ -44,19 +44,19 @@ absl::Status CheckName(const std::string& place, const std::string& what, const 
 
 }  // namespace
 
-std::string_view RoleName(Role role) { return kRoles[static_cast<std::size_t>(role)].second; }
+std::string_view RoleName(Role role) { return kRoleNames[static_cast<std::size_t>(role)].second; }
 
 std::vector<std::string> RoleNames() {
   std::vector<std::string> names;
-  names.reserve(kRoles.size());
-  for (const auto& [role, name] : kRoles) names.emplace_back(name);
+  names.reserve(kRoles);
+  for (const auto& [role, name] : kRoleNames) names.emplace_back(name);
   return names;
 }
 
 bool IsUserName(std::string_view name) { return IsWellFormed(name) && name != kAnonymous && name != kServerOwner; }
 
 std::optional<Role> RoleOf(std::string_view name) {
-  for (const auto& [role, its_name] : kRoles) {
+  for (const auto& [role, its_name] : kRoleNames) {
     if (name == its_name) return role;
   }
   return std::nullopt;

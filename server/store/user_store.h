@@ -2,6 +2,7 @@
 #ifndef FLATLIGHT_SERVER_STORE_USER_STORE_H_
 #define FLATLIGHT_SERVER_STORE_USER_STORE_H_
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@ namespace flatlight {
 
 // In the order of what they may do.
 enum class Role { kStudent, kGrader, kInstructor, kAdmin };
+inline constexpr std::size_t kRoles = 4;
 
 std::string_view RoleName(Role role);
 std::vector<std::string> RoleNames();  // In that order.

@@ -6,6 +6,7 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -23,6 +24,7 @@ using Outcome = WebhookAttempt::Outcome;
 
 const WallTime kStart{std::chrono::hours(24 * 365 * 50)};
 const char kNobody[] = "127.0.0.1:1";  // Where nobody listens.
+constexpr seconds kPatience{60};       // An attempt takes milliseconds: only one that is never made takes so long.
 
 // A sender whose clock is the test's.
 class WebhookSenderTest : public ::testing::Test {
@@ -51,19 +53,29 @@ class WebhookSenderTest : public ::testing::Test {
     attempts_.push_back(attempt.outcome);
     changed_.notify_all();
   }
-  // All so far, once there are so many.
+  // All so far, once there are so many; ends the test if they do not come.
   std::vector<Outcome> AwaitAttempts(std::size_t count) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return attempts_.size() >= count; });
+    if (!changed_.wait_for(lock, kPatience, [&] { return attempts_.size() >= count; })) {
+      ThrowMissing(attempts_.size(), count, "made");
+    }
     return attempts_;
   }
-  // Once so many attempts are written.
+  // Once so many attempts are written; ends the test if they are not.
   WebhookState AwaitState(const JobId& job, unsigned attempts) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
     while (true) {
       WebhookState state = **outbox_.Of(job);
       if (state.attempts >= attempts) return state;
+      if (std::chrono::steady_clock::now() > end) ThrowMissing(state.attempts, attempts, "written");
       std::this_thread::sleep_for(milliseconds(1));
     }
+  }
+
+  // GoogleTest reports it as a failure of the test, whose sender is closed on the way.
+  [[noreturn]] static void ThrowMissing(std::size_t attempts, std::size_t wanted, const std::string& what) {
+    throw std::runtime_error(std::to_string(attempts) + " of " + std::to_string(wanted) + " attempts were " + what +
+                             " within " + std::to_string(kPatience.count()) + " s");
   }
 
   WebhookRules rules_;

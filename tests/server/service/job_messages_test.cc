@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/service/job_messages.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "flatlight/v1/render_service.pb.h"
+#include "tests/support/rendering/test_scene.h"
+
+namespace flatlight {
+namespace {
+
+JobRecord NewJob() {
+  auto spec = std::make_shared<JobSpec>();
+  spec->id = JobId::Random();
+  spec->owner = "ada";
+  spec->scene = std::make_shared<SceneOutline>(*testing::FloorAndLamp({4}));
+  return {std::move(spec), std::make_shared<JobState>()};
+}
+
+JobRecord InState(const JobRecord& job, double samples) {
+  auto state = std::make_shared<JobState>(*job.state);
+  state->progress.samples = samples;
+  return {job.spec, std::move(state)};
+}
+
+v1::Job Told(const grpc::Slice& bytes) {
+  v1::Job job;
+  EXPECT_TRUE(job.ParseFromArray(bytes.begin(), static_cast<int>(bytes.size())));
+  return job;
+}
+
+TEST(JobMessages, AStateIsSerialisedOnce) {
+  JobMessages messages;
+  const JobRecord job = NewJob();
+  const grpc::Slice first = messages.Of(job);
+  EXPECT_EQ(Told(first).name(), job.spec->id.Name());
+  EXPECT_EQ(Told(first).owner(), "ada");
+  EXPECT_EQ(messages.Of(job).begin(), first.begin());
+}
+
+TEST(JobMessages, EachJobAndEachOfItsStatesIsToldAsItIs) {
+  JobMessages messages;
+  const JobRecord job = NewJob();
+  const JobRecord other = NewJob();
+  messages.Of(job);
+  EXPECT_EQ(Told(messages.Of(other)).name(), other.spec->id.Name());
+  // Those before are gone by then, and memory is used again.
+  for (double samples = 1; samples <= 1000; ++samples) {
+    EXPECT_EQ(Told(messages.Of(InState(job, samples))).progress().samples(), samples);
+  }
+  EXPECT_EQ(Told(messages.Of(job)).progress().samples(), 0);
+}
+
+TEST(JobMessages, ManyJobsAreToldThoughNotAllAreRemembered) {
+  JobMessages messages;
+  for (int i = 0; i < 10'000; ++i) {
+    const JobRecord job = NewJob();
+    ASSERT_EQ(Told(messages.Of(job)).name(), job.spec->id.Name());
+  }
+}
+
+TEST(JobMessages, KeepsNothingOfAStateThatIsGone) {
+  JobMessages messages;
+  JobRecord job = NewJob();
+  auto field = std::make_shared<Field>();
+  const std::weak_ptr<const Field> values = field;
+  auto state = std::make_shared<JobState>();
+  state->field = std::move(field);
+  job.state = std::move(state);
+  messages.Of(job);
+  job.state = nullptr;
+  EXPECT_TRUE(values.expired());
+}
+
+}  // namespace
+}  // namespace flatlight
