@@ -64,9 +64,9 @@ void BM_BuildRayCaster(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 
-BENCHMARK(BM_ClosestHit)->Arg(10)->Arg(1000)->Arg(100'000);
-BENCHMARK(BM_Visible)->Arg(10)->Arg(1000)->Arg(100'000);
-BENCHMARK(BM_BuildRayCaster)->Arg(10)->Arg(1000)->Arg(100'000)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_ClosestHit)->Arg(10)->Arg(1000)->Arg(100'000)->Arg(1'000'000);
+BENCHMARK(BM_Visible)->Arg(10)->Arg(1000)->Arg(100'000)->Arg(1'000'000);
+BENCHMARK(BM_BuildRayCaster)->Arg(10)->Arg(1000)->Arg(100'000)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace flatlight

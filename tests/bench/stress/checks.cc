@@ -12,7 +12,7 @@ const std::vector<Check>& Checks() {
       {"rays", CheckAgainstRays, 1},
       {"oracle", CheckAgainstOracle, 40},
       {"triangles", CheckTriangles, 1, Crowding::kHundreds},
-      {"sampling", CheckSampling, 10, Crowding::kHundreds},
+      {"sampling", CheckSampling, 2, Crowding::kHundreds},
       {"visibility skip", CheckVisibilitySkip, 1},
       {"powers of two", CheckPowersOfTwo, 4, Crowding::kHundreds},
       {"grid moves", CheckGridMoves, 1},

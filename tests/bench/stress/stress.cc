@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <iterator>
 #include <mutex>
 #include <string>
@@ -120,6 +121,13 @@ int Replay(const std::string& path, std::uint64_t seed) {
   return failures == 0 ? 0 : 1;
 }
 
+// Calls visit(kind, quantity, pool, whether it is news).
+template <typename Visit>
+void EachPooled(const Tally& tally, const Visit& visit) {
+  for (const auto& [what, pool] : tally.biases) visit("bias", what, pool, pool.IsAbove() || pool.IsBelow());
+  for (const auto& [what, pool] : tally.excesses) visit("excess of errors", what, pool, pool.IsAbove());
+}
+
 void WriteCsv(const std::filesystem::path& folder, const CampaignResult& result) {
   std::filesystem::create_directories(folder);
   std::ofstream lines(folder / "checks.csv");
@@ -128,6 +136,12 @@ void WriteCsv(const std::filesystem::path& folder, const CampaignResult& result)
     lines << key.first << ',' << key.second << ',' << line.scenes << ',' << line.failures << ',' << line.seconds
           << '\n';
   }
+  std::ofstream pooled(folder / "pooled.csv");
+  pooled << "kind,quantity,scenes,sum,squares,score\n" << std::setprecision(17);
+  EachPooled(result.tally, [&](const char* kind, const std::string& what, const Pooled& pool, bool) {
+    pooled << kind << ',' << what << ',' << pool.scenes() << ',' << pool.sum() << ',' << pool.squares() << ','
+           << pool.Score() << '\n';
+  });
   std::ofstream ratios(folder / "ratios.csv");
   ratios << "quantity,values,median,share_99,share_99_99,largest\n";
   for (const auto& [what, ratio] : result.tally.ratios) {
@@ -157,6 +171,10 @@ void PrintSummary(const CampaignResult& result, double seconds) {
     std::printf("\nz of %s: %.0f values, mean %.4f (+- %.4f if honest), mean square %.3f, largest %.2f\n", what.c_str(),
                 z.count, z.Mean(), 1 / std::sqrt(z.count), z.MeanSquare(), z.largest);
   }
+  std::printf("\n%-17s %-28s %10s %9s\n", "POOLED", "QUANTITY", "SCENES", "SCORE");
+  EachPooled(result.tally, [](const char* kind, const std::string& what, const Pooled& pool, bool) {
+    std::printf("%-17s %-28s %10.0f %9.2f\n", kind, what.c_str(), pool.scenes(), pool.Score());
+  });
   std::printf("\n");
   for (const auto& [what, count] : result.tally.counts) {
     std::printf("%-40s %12llu\n", what.c_str(), static_cast<unsigned long long>(count));
@@ -223,6 +241,12 @@ int Main(int argc, char** argv) {
                 static_cast<unsigned long long>(line.failures), static_cast<unsigned long long>(line.scenes));
     news = news || !known;
   }
+  EachPooled(result.tally, [&](const char* kind, const std::string& what, const Pooled& pool, bool is_news) {
+    if (!is_news) return;
+    std::printf("NEWS     %s of %s: a score of %.2f over %.0f scenes\n", kind, what.c_str(), pool.Score(),
+                pool.scenes());
+    news = true;
+  });
   return news ? 1 : 0;
 }
 

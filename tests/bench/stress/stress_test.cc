@@ -14,8 +14,10 @@
 #include "tests/bench/stress/known_limits.h"
 #include "tests/bench/stress/minimise.h"
 #include "tests/bench/stress/physics.h"
+#include "tests/bench/stress/random.h"
 #include "tests/bench/stress/scene_json.h"
 #include "tests/bench/stress/solve.h"
+#include "tests/bench/stress/tally.h"
 #include "tests/support/transport/scene_maker.h"
 
 namespace flatlight::stress {
@@ -33,6 +35,10 @@ TEST(StressTest, ScenesOfEveryFamilyPassEveryCheck) {
         << ": build/release/bench/stress --family '" << key.first << "' --check '" << key.second
         << "' --scenes 201 minimises and saves them";
   }
+  const Pooled &bias = result.tally.biases.at("sampling: all"), &excess = result.tally.excesses.at("sampling: all");
+  EXPECT_GT(bias.scenes(), 1000);
+  EXPECT_FALSE(bias.IsAbove() || bias.IsBelow()) << bias.Score();
+  EXPECT_FALSE(excess.IsAbove()) << excess.Score();
   // Bounds are kept, and are of use: half of the differences come within a tenth of them, and they are not far above.
   EXPECT_GT(result.tally.counts.at("points"), 40'000u);
   EXPECT_LT(result.tally.ratios.at("bound of E / size of terms / 2^-53").Quantile(0.5), 100);
@@ -77,6 +83,21 @@ TEST(StressTest, AFailingSceneShrinksToWhatFails) {
   EXPECT_TRUE(small.probes.empty());
   EXPECT_TRUE(std::holds_alternative<SegmentDescription>(small.curves[0].shape));
   EXPECT_FALSE(small.curves[0].emission);
+}
+
+// What is far below the noise of one scene adds up. Terms are skewed, as those of samples that miss light are.
+TEST(StressTest, AnErrorFarBelowTheNoiseOfASceneShowsInThePool) {
+  Random random(5);
+  Pooled honest, dim;
+  for (int scene = 0; scene < 50'000; ++scene) {
+    // With mean 0 and deviation 1: rarely much, as a rule too little.
+    const double term = random.Chance(0.02) ? 7 : -1.0 / 7;
+    honest.Add(term), dim.Add(term - 0.03);
+    EXPECT_TRUE(scene > 500 || !dim.IsBelow());  // Too few to tell.
+  }
+  EXPECT_FALSE(honest.IsAbove() || honest.IsBelow()) << honest.Score();
+  EXPECT_TRUE(dim.IsBelow()) << dim.Score();
+  EXPECT_FALSE(dim.IsAbove());
 }
 
 // Where the order of curves does change the light, and no name warns of it, the check has to see it.

@@ -64,9 +64,36 @@ struct Deviations {
   double MeanSquare() const { return count > 0 ? sum_of_squares / count : 0; }
 };
 
+// A term of every scene, whose mean is 0 if all is right however it is spread: what is too small to be seen in one
+// scene adds up over many.
+class Pooled {
+ public:
+  void Add(double term) { ++scenes_, sum_ += term, squares_ += term * term; }
+  double scenes() const { return scenes_; }
+  double sum() const { return sum_; }
+  double squares() const { return squares_; }
+  // The sum over its own scatter: nearly a standard normal number if all is right and scenes are many, as the terms of
+  // different scenes are independent.
+  double Score() const { return squares_ > 0 ? sum_ / std::sqrt(squares_) : 0; }
+  // Whether the score is beyond chance: a normal number is above kMostScore once in 5e7. That leaves a campaign that
+  // judges 60 such sums at its end a false alarm in 1e5, with a margin for terms that are far from normal.
+  bool IsAbove() const { return scenes_ >= kLeastScenes && Score() > kMostScore; }
+  bool IsBelow() const { return scenes_ >= kLeastScenes && Score() < -kMostScore; }
+
+ private:
+  static constexpr double kLeastScenes = 1000;
+  static constexpr double kMostScore = 5.5;
+
+  double scenes_ = 0;
+  double sum_ = 0;
+  double squares_ = 0;
+};
+
 struct Tally {
   std::map<std::string, Ratios> ratios;
   std::map<std::string, Deviations> deviations;
+  std::map<std::string, Pooled> biases;    // Of estimates: none may be above or below.
+  std::map<std::string, Pooled> excesses;  // Of squared errors over what is stated: none may be above.
   std::map<std::string, std::uint64_t> counts;
 
   // |difference| against a bound: within it, or not. Neither may be NaN.

@@ -75,6 +75,29 @@ TEST(BezierRenderingTest, AFurnaceIsLitAlikeEverywhereByPathsAndRays) {
   }
 }
 
+// Seen from a place that is known to the distance at which arcs follow the curve, a lamp low above its horizon gives
+// less light than that makes uncertain, which path tracing, that adds it up without noise, states all the same.
+TEST(BezierRenderingTest, PathsStateWhatArcsLeaveUncertainOfALampLowAboveTheHorizon) {
+  SceneMaker maker;
+  maker
+      .Bezier("wall", {{-1.5324984456922257, 0.18516035582293405},
+                       {-1.1616900242691883, -0.12719776363819285},
+                       {-1.304043085482185, -0.2568884346135045},
+                       {-0.2545098857630598, -0.5336000128261069}})
+      .Segment("lamp", {-0.46, 0.58}, {-0.4, 2}, {.radiance = {1}, .two_sided = true})
+      .Probe("wall", 3);
+  const auto scene = maker.Build();
+  const Ended exact = Render(scene, With(Method::kExact)), paths = Render(scene, Sampled(128, 1));
+  const ProbeField &truth = exact.field->probes[0], &sampled = paths.field->probes[0];
+  int grazing = 0;
+  for (std::size_t i = 0; i < truth.irradiance.size(); ++i) {
+    EXPECT_NEAR(sampled.irradiance[i], truth.irradiance[i], 6 * sampled.standard_error[i] + 1e-13) << i;
+    EXPECT_LT(sampled.standard_error[i], 1e-8);
+    grazing += std::abs(sampled.irradiance[i] - truth.irradiance[i]) > 1e-7 * truth.irradiance[i] ? 1 : 0;
+  }
+  EXPECT_GT(grazing, 0);
+}
+
 // A lamp, a wave that reflects, and a leaf that blocks.
 std::shared_ptr<const Scene> Wave() {
   SceneMaker maker;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -288,6 +289,45 @@ TEST(BezierTest, ATipThatIsSharperThanArcsFollowTouchesAsTheCurveDoes) {
   EXPECT_NEAR(value.gradient, other.gradient, value.gradient_error + other.gradient_error);
   EXPECT_NEAR(value.hessian, other.hessian, value.hessian_error + other.hessian_error);
   EXPECT_LT(value.irradiance_error, 1e-12);
+}
+
+// Near an inflection the radius of curvature is large and changes fast: how far the touching point slides as coordinates
+// round makes more of it, and of the second derivative, than all else.
+TEST(BezierTest, NearAnInflectionTheBoundHoldsWhatTheTouchingPointMakesOfItsRadius) {
+  const BezierDescription wave{{0.20097049277667889, -0.31851036166143065},
+                               {-0.89122761995529043, 0.67205042880347432},
+                               {0.58472130602344552, -0.14846045474656022},
+                               {0.71784766350074869, -0.22246738524730558}};
+  // Every number moved by one of two roundings of the scene's size, or by none.
+  const auto value_at = [&](std::mt19937_64* random) {
+    BezierDescription curve = wave;
+    Point2 place{1.6580086706737012, -0.74509243645020318};
+    for (Point2* point : {&curve.p0, &curve.p1, &curve.p2, &curve.p3, &place}) {
+      if (random == nullptr) break;
+      point->x += (*random)() % 2 == 0 ? 0x1p-52 : -0x1p-52;
+      point->y += (*random)() % 2 == 0 ? 0x1p-52 : -0x1p-52;
+    }
+    SceneDescription scene = EmptyScene();
+    AddCurve(scene, curve);
+    AddCurve(scene, ArcDescription{{0, 0}, 4, 0, 2 * kPi}, 1);
+    ProbeDescription probe;
+    probe.name = "free";
+    probe.points.push_back({place, {-0.94848607847479938, 0.31681881089906383}});
+    scene.probes.push_back(probe);
+    return Solve(*Build(scene), 0)[0];
+  };
+  const WorldValue value = value_at(nullptr);
+  std::mt19937_64 random(3);
+  double widest = 0;
+  for (int i = 0; i < 32; ++i) {
+    const WorldValue other = value_at(&random);
+    EXPECT_NEAR(value.irradiance, other.irradiance, value.irradiance_error + other.irradiance_error);
+    EXPECT_NEAR(value.gradient, other.gradient, value.gradient_error + other.gradient_error);
+    EXPECT_NEAR(value.hessian, other.hessian, value.hessian_error + other.hessian_error);
+    widest = std::max(widest, std::abs(value.hessian - other.hessian));
+  }
+  EXPECT_GT(widest, 3e-10);
+  EXPECT_LT(value.hessian_error, 1e-6);
 }
 
 }  // namespace
