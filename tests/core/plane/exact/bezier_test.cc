@@ -291,8 +291,8 @@ TEST(BezierTest, ATipThatIsSharperThanArcsFollowTouchesAsTheCurveDoes) {
   EXPECT_LT(value.irradiance_error, 1e-12);
 }
 
-// Near an inflection the radius of curvature is large and changes fast: how far the touching point slides as coordinates
-// round makes more of it, and of the second derivative, than all else.
+// Near an inflection the radius of curvature is large and changes fast: how far the touching point slides as
+// coordinates round makes more of it, and of the second derivative, than all else.
 TEST(BezierTest, NearAnInflectionTheBoundHoldsWhatTheTouchingPointMakesOfItsRadius) {
   const BezierDescription wave{{0.20097049277667889, -0.31851036166143065},
                                {-0.89122761995529043, 0.67205042880347432},
