@@ -44,7 +44,7 @@ Edge TrueEdge(const Scene& scene, const Receiver& receiver, const Edge& edge) {
   itself.position = receiver.position + receiver.offset;
   const Element* const element = edge.element == ElementId::kNone ? nullptr : &scene.element(edge.element);
   const BezierPiece* const on = element == nullptr ? nullptr : scene.bezier_piece(*element);
-  // Where elements meet at a corner the curve has none: it turns sharply, and ends where it touches the direction.
+  // Where elements meet the curve has no corner: light ends where it touches the direction, beside the joint.
   const bool joint = edge.kind == Edge::Kind::kVertex;
   Edge found = VertexEdge(itself, edge.point);
   found.kind = edge.kind, found.signed_radius = edge.signed_radius, found.element = edge.element;

@@ -174,21 +174,20 @@ class PartBuilder {
   // Of an end of the element.
   Edge OwnEnd(Point2 end) const {
     Edge vertex = VertexEdge(receiver_, end);
-    if (IsCornerOfChain(end)) vertex.element = id_;
+    if (IsJointOfChain(end)) vertex.element = id_;
     return vertex;
   }
 
-  // Whether the Bézier that the element follows goes on at the end, and the elements that meet there have a corner that
-  // the curve has not: arcs that follow it have none.
-  bool IsCornerOfChain(Point2 end) const {
+  // Whether the Bézier that the element follows goes on at the end. Then light ends there because the curve touches the
+  // direction, and at its own touching point beside the joint of elements.
+  bool IsJointOfChain(Point2 end) const {
     const BezierPiece* const on = scene_.bezier_piece(element_);
     if (on == nullptr) return false;
     const Curve& curve = scene_.curve(element_.curve);
     const auto e = static_cast<std::uint32_t>(id_) + (end == element_.a ? 0xffffffffU : 1U);
     if (e < curve.first_element || e >= curve.first_element + curve.element_count) return false;
     const BezierPiece* const beside = scene_.bezier_piece(scene_.elements()[e]);
-    return beside != nullptr && beside->bezier == on->bezier && !(on->bends && beside->bends) &&
-           !scene_.beziers()[on->bezier].IsStraight();
+    return beside != nullptr && beside->bezier == on->bezier && !scene_.beziers()[on->bezier].IsStraight();
   }
 
   bool ShowsConvexSide(Point2 end, Vector2 radial) const {
