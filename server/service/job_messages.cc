@@ -23,6 +23,7 @@ grpc::Slice JobMessages::Of(const JobRecord& job) {
     if (known != shard.messages.end() && IsSame(known->second.state, job.state)) return known->second.bytes;
   }
   grpc::Slice bytes = ToSlice(JobToProto(*job.spec, *job.state, JobView::kWhole));
+  if (bytes.size() > kMostBytes) return bytes;
   const std::lock_guard lock(shard.mutex);
   if (shard.messages.size() >= kMostRemembered) shard.messages.clear();
   shard.messages.insert_or_assign(id, Message{job.state, bytes});

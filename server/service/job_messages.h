@@ -18,11 +18,14 @@ namespace flatlight {
 // for. Safe to use from any thread.
 class JobMessages {
  public:
+  // Of a message that is remembered. Most take about 1 KiB, but names of scenes may be long.
+  static constexpr std::size_t kMostBytes = 16u << 10;
+
   // A whole v1::Job, without what only those who may change it are told. A copy of the result shares its bytes.
   grpc::Slice Of(const JobRecord& job);
 
  private:
-  // Of a shard. A job takes about 1 KiB; where there are more, all of the shard are forgotten.
+  // Of a shard; where there are more, all of the shard are forgotten.
   static constexpr std::size_t kMostRemembered = 256;
 
   struct Message {

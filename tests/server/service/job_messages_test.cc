@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <utility>
 
 #include "flatlight/v1/render_service.pb.h"
@@ -59,6 +60,20 @@ TEST(JobMessages, ManyJobsAreToldThoughNotAllAreRemembered) {
     const JobRecord job = NewJob();
     ASSERT_EQ(Told(messages.Of(job)).name(), job.spec->id.Name());
   }
+}
+
+// What is remembered is bounded in bytes, too.
+TEST(JobMessages, LongOnesAreNotRemembered) {
+  JobMessages messages;
+  const JobRecord job = NewJob();
+  auto spec = std::make_shared<JobSpec>(*job.spec);
+  auto scene = std::make_shared<SceneOutline>(*job.spec->scene);
+  scene->name = std::string(JobMessages::kMostBytes, 'x');
+  spec->scene = std::move(scene);
+  const JobRecord long_one{std::move(spec), job.state};
+  const grpc::Slice first = messages.Of(long_one);
+  EXPECT_EQ(Told(first).name(), job.spec->id.Name());
+  EXPECT_NE(messages.Of(long_one).begin(), first.begin());
 }
 
 TEST(JobMessages, KeepsNothingOfAStateThatIsGone) {
