@@ -2,6 +2,7 @@
 #include "core/plane/reference/brightest_light.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <variant>
@@ -12,11 +13,20 @@
 namespace flatlight {
 namespace {
 
+// No less than this is the distance of an element. DistanceTo() gives |d + d^2 / (2 r)| of an arc, where d counts from
+// its circle outward, or that of an end; and all of the element is within half its length of the middle of its chord.
+double LeastDistance(const Element& element, Point2 point) {
+  const double x = DistanceTo(element, point);
+  if (element.kind == Element::Kind::kSegment) return x;
+  const double from_middle = Length(point - (element.a + 0.5 * (element.b - element.a)));
+  return std::max(2 * x / (1 + std::sqrt(1 + 2 * x / element.radius)), from_middle - 0.5 * element.length);
+}
+
 Spectrum LightsWithin(const Scene& scene, Point2 from, const Element* element) {
   Spectrum sum;
   for (const Light& light : scene.lights()) {
     if (const auto* point = std::get_if<PointLight>(&light.kind)) {
-      const double distance = element ? DistanceTo(*element, point->position) : Length(point->position - from);
+      const double distance = element ? LeastDistance(*element, point->position) : Length(point->position - from);
       sum = sum + (1 / distance) * point->intensity;
     } else {
       sum = sum + std::get<DirectionalLight>(light.kind).irradiance;

@@ -7,6 +7,9 @@
 
 namespace flatlight {
 
+// Stands for what nothing bounds, for results hold finite numbers alone.
+inline constexpr double kUnbounded = 1e200;
+
 // What lights without a surface add to the irradiance at a receiver, all of them seen and facing it: no less than they
 // do.
 Spectrum LightsAt(const Scene& scene, const Receiver& receiver);

@@ -80,8 +80,8 @@ std::size_t Radiosity::memory() const {
   std::size_t entries = 0, high_entries = 0, specular_bytes = 0;
   const auto add = [&](const Row& row, std::size_t& to) {
     to += row.panels.size();
-    specular_bytes +=
-        row.tints.size() * (sizeof(Spectrum) + sizeof(std::uint32_t)) + row.specular.size() * sizeof(SpecularPiece);
+    specular_bytes += row.tints.size() * (sizeof(Spectrum) + sizeof(std::uint32_t));
+    for (const SpecularPiece& piece : row.specular) specular_bytes += BytesOf(piece);
   };
   for (const Row& row : rows_.nodes) add(row, high_entries);
   for (const Row& row : rows_.between) add(row, entries);

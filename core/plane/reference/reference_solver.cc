@@ -53,8 +53,8 @@ bool IsDirectLight(const Scene& world, const ReferenceOptions& options) {
 std::unique_ptr<SolvedWorld> NewWorld(std::shared_ptr<const RayCaster> caster, const ReferenceOptions& options) {
   auto world = std::make_unique<SolvedWorld>();
   world->caster = std::move(caster);
-  world->charts = ChartsOf(world->caster->scene());
   const Scene& scene = world->caster->scene();
+  world->charts = ChartsOf(scene);
   if (!IsDirectLight(scene, options)) world->meetings = Meetings(scene, world->charts);
   world->channels = static_cast<std::size_t>(options.channels);
   world->max_bounces = options.max_bounces;
@@ -63,12 +63,12 @@ std::unique_ptr<SolvedWorld> NewWorld(std::shared_ptr<const RayCaster> caster, c
 
 // How far ways over mirrors and through glass are followed at first.
 constexpr double kFirstShare = 1e-6;
-// Stands for what nothing bounds, for results hold finite numbers alone.
-constexpr double kUnbounded = 1e200;
 // Of ways that are not followed further, beside the error that is wanted; in one round they are followed no more than
 // so much further; and no further than rounding.
 constexpr double kUnfollowed = 0.3;
 constexpr double kMostFurther = 1e-3;
+// So many times as many there may be then: between two mirrors the part of the k-th reflection falls as 1/k^2.
+constexpr std::size_t kMoreWays = 32;
 constexpr double kLeastShare = 1e-15;
 constexpr std::size_t kMostSights = std::size_t{1} << 28;  // Bytes.
 
@@ -152,15 +152,16 @@ ReferenceSolver::~ReferenceSolver() = default;
 
 std::vector<ExactValue> ReferenceSolver::FirstValues() const {
   const Scene& world = world_->caster->scene();
-  const bool reflects = !IsDirectLight(world, options_);
+  const bool reflects = world_->max_bounces != 0u && !IsDirectLight(world, options_);
   const Spectrum brightest = BrightestLight(world);
   std::vector<ExactValue> values = direct_;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!reflects && has_direct_[i] != 0) continue;
     values[i].irradiance_error = values[i].irradiance_error + 2 * brightest;
     if (has_direct_[i] == 0) values[i].irradiance_error = values[i].irradiance_error + LightsAt(world, *points_[i]);
-    for (int c = 0; c < kMaxChannels; ++c)
-      values[i].irradiance_error[c] = std::min(values[i].irradiance_error[c], kUnbounded);
+    // Beside a lamp it is infinite, or no number.
+    for (double& error : values[i].irradiance_error.value)
+      if (!(error < kUnbounded)) error = kUnbounded;
     values[i].gradient_error = values[i].hessian_error = Spectrum::Grey(kUnbounded);
   }
   return values;
@@ -390,6 +391,7 @@ void ReferenceSolver::FollowFurther() {
   double of_rows[kMaxChannels], least_factor = 1;
   for (int c = 0; c < options_.channels; ++c)
     of_rows[c] = world_->radiosity->UnfollowedPart(static_cast<std::size_t>(c));
+  const bool rows_may = specular_->least_share > kLeastShare && world_->radiosity->memory() < kMostMemory / kMoreWays;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (dark_waits_ && dark_[i] != 0) continue;
     ViewLimit& limit = limits_[i];
@@ -412,10 +414,10 @@ void ReferenceSolver::FollowFurther() {
       limit.least_share = std::max(limit.least_share * std::max(factor, kMostFurther), kLeastShare);
       goes_further_[i] = 1;
     }
-    if (factor_of_rows < 1 && specular_->least_share > kLeastShare) goes_further_[i] = 1;
+    if (factor_of_rows < 1 && rows_may) goes_further_[i] = 1;
     least_factor = std::min(least_factor, factor_of_rows);
   }
-  if (!(least_factor < 1) || !(specular_->least_share > kLeastShare)) return;
+  if (!(least_factor < 1) || !rows_may) return;
   specular_->least_share = std::max(specular_->least_share * std::max(least_factor, kMostFurther), kLeastShare);
   new_rows_ = true;
 }

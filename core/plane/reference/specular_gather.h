@@ -3,6 +3,7 @@
 #ifndef FLATLIGHT_CORE_PLANE_REFERENCE_SPECULAR_GATHER_H_
 #define FLATLIGHT_CORE_PLANE_REFERENCE_SPECULAR_GATHER_H_
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -24,11 +25,15 @@ Spectrum EmittedBy(const Scene& scene, const SpecularPiece& piece);
 class SpecularGather {
  public:
   SpecularGather(const RayCaster& caster, const std::vector<Chart>& charts, const SpecularViewOptions& options)
-      : scene_(caster.scene()), charts_(charts), tolerance_(options.least_share), view_(caster, options) {}
+      : scene_(caster.scene()), charts_(charts), view_(caster, options) {
+    set_least_share(options.least_share);
+  }
 
   SpecularView& view() { return view_; }
   void set_least_share(double least_share) {
-    tolerance_ = least_share;
+    // What is less is rounding of places: halves of a stretch would differ by it however short they were.
+    constexpr double kLeastTolerance = 1e-13;
+    tolerance_ = std::max(least_share, kLeastTolerance);
     view_.set_least_share(least_share);
   }
 
@@ -82,7 +87,7 @@ class SpecularGather {
 
   const Scene& scene_;
   const std::vector<Chart>& charts_;
-  double tolerance_;  // Of irradiance per radiance, over the whole half circle.
+  double tolerance_ = 0;  // Of irradiance per radiance, over the whole half circle.
   SpecularView view_;
 };
 

@@ -135,12 +135,14 @@ std::optional<double> DistanceBehind(const Scene& scene, const Receiver& receive
   return Distance(to, ray.from, ray.direction, far, IsOwnCircle(scene, last, to));
 }
 
+std::size_t BytesOf(const SpecularPiece& piece) {
+  return sizeof(SpecularPiece) + sizeof(SpecularWay) + sizeof(Directions) +
+         piece.way->links.size() * sizeof(ChainLink) + piece.way->turnings.size() * sizeof(SpecularWay::Turning);
+}
+
 std::size_t SpecularSight::bytes() const {
   std::size_t bytes = 0;
-  for (const SpecularPiece& piece : pieces) {
-    bytes += sizeof(SpecularPiece) + sizeof(SpecularWay) + sizeof(Directions) +
-             piece.way->links.size() * sizeof(ChainLink) + piece.way->turnings.size() * sizeof(SpecularWay::Turning);
-  }
+  for (const SpecularPiece& piece : pieces) bytes += BytesOf(piece);
   return bytes;
 }
 

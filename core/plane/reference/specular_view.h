@@ -89,12 +89,14 @@ struct SpecularPiece {
   double end = 0;
 };
 
+// What a piece holds, its way included, about.
+std::size_t BytesOf(const SpecularPiece& piece);
+
 // What is seen from a point over mirrors and through glass.
 struct SpecularSight {
   std::vector<SpecularPiece> pieces;
   double lost = 0;  // What else could have come: irradiance per radiance.
 
-  // About so much.
   std::size_t bytes() const;
 };
 
