@@ -67,6 +67,7 @@ constexpr double kFirstShare = 1e-6;
 // so much further; and no further than rounding.
 constexpr double kUnfollowed = 0.3;
 constexpr double kMostFurther = 1e-3;
+constexpr double kMuch = 0.2;  // Of those from a point and from panels together.
 // So many times as many there may be then: between two mirrors the part of the k-th reflection falls as 1/k^2.
 constexpr std::size_t kMoreWays = 32;
 constexpr double kLeastShare = 1e-15;
@@ -399,13 +400,12 @@ void ReferenceSolver::FollowFurther() {
     for (int c = 0; c < options_.channels; ++c) {
       const double error = values_[i].irradiance_error[c], allowed = options_.target_error * SizeAt(i, c);
       if (!(error > allowed)) continue;
-      const auto needed = [&](double part) {
-        const double wanted = kUnfollowed * std::max(allowed, error - part);
-        return part > 2 * wanted ? wanted / part : 1;
-      };
-      unfollowed = std::max(unfollowed, limit.unfollowed[c]);
-      factor = std::min(factor, needed(limit.unfollowed[c]));
-      factor_of_rows = std::min(factor_of_rows, needed(of_rows[c] * limit.indirect[c]));
+      const double from_point = limit.unfollowed[c], from_rows = of_rows[c] * limit.indirect[c];
+      const double both = from_point + from_rows, wanted = kUnfollowed * std::max(allowed, error - both);
+      unfollowed = std::max(unfollowed, from_point);
+      if (!(both > 2 * wanted)) continue;
+      if (from_point > kMuch * both) factor = std::min(factor, wanted / both);
+      if (from_rows > kMuch * both) factor_of_rows = std::min(factor_of_rows, wanted / both);
     }
     if (factor < 1 && limit.least_share > kLeastShare && unfollowed < kIdle * limit.before) {
       limit.before = unfollowed;
