@@ -30,9 +30,9 @@ double LightErrors::Missed(std::size_t index, const double* weights) const {
       largest += count * share;
       square += count * share * share;
     }
-    const double off =
-        largest > kUneven ? most[index]
-                          : std::min({most[index], std::sqrt(square) * root_mean_square[index], largest * mean[index]});
+    const double off = largest > kUneven ? most[index]
+                                         : std::min({most[index], std::sqrt(square) * root_mean_square[index],
+                                                     in_all[index] + (largest - 1) * mean[index]});
     factor = std::max(factor, off);
   }
   return factor * weights[0];
@@ -57,7 +57,8 @@ Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const Pa
     AddSpecular(receiver, mesh, light, errors, **sight, sum);
   }
   for (std::size_t c = 0; c < light.channels(); ++c) {
-    for (int m = 0; m <= derivatives; ++m) sum.error[m].value[c] += of_residuals_[m][c].total();
+    sum.error[0].value[c] += of_residuals_[0][c].rest();
+    for (int m = 1; m <= derivatives; ++m) sum.error[m].value[c] += of_residuals_[m][c].total();
     sum.rounding[0].value[c] += end_errors_.joints();
   }
   return sum;
@@ -87,6 +88,7 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
       for (std::size_t c = 0; c < channels; ++c) {
         const double radiance = light.At(i, c, p);
         const double residual = errors ? errors->residual.At(i, c, p) : 0;
+        sum.value[0].value[c] += weight[0] * residual;
         for (int m = 0; m <= derivatives; ++m) {
           sum.value[m].value[c] += weight[m] * radiance;
           sum.rounding[m].value[c] += kRounding * std::abs(weight[m] * radiance);
@@ -111,7 +113,7 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
     const auto rest = [&](double u, double begin, double end) {
       add_weights(u, {std::abs(sine_at(end) - sine_at(begin)), 0, 0});
     };
-    ForEachPoint(chart, receiver.position, radius != 0, count_, from, to, 0, add, rest);
+    ForEachPoint(chart, receiver.position, radius != 0, errors ? high_count_ : count_, from, to, 0, add, rest);
     if (!errors) continue;
     double share = 0;
     for (std::size_t c = 0; c < channels; ++c) {
@@ -123,9 +125,9 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
         sum.error[m].value[c] += absolute[m] * other;
       }
       sum.indirect.value[c] += absolute[0] * other;
-      share = std::max(share, std::abs(off[0].value[c]) + missed);
+      share = std::max(share, ErrorSum::RestOf(off[0].value[c], missed));
     }
-    shares_.emplace_back(i, share);
+    shares_.push_back({i, share, absolute[0]});
   }
   AddEnd(receiver, mesh, light, errors, derivatives, piece, false, sum);
   AddEnd(receiver, mesh, light, errors, derivatives, piece, true, sum);
@@ -147,19 +149,21 @@ void Reception::AddSpecular(const Receiver& receiver, const PanelMesh& mesh, con
     specular_->OfPanels(receiver, piece, mesh, count, [&](std::size_t i, const auto& moments_of) {
       const SpecularGather::Moments moments = moments_of();
       uncertain += moments.error;
-      double share = 0;
+      double share = 0, most_tint = 0;
       for (std::size_t c = 0; c < channels; ++c) {
+        most_tint = std::max(most_tint, tint.value[c]);
         sum.value[0].value[c] += tint.value[c] * light.At(i, c, moments.value.data());
         if (!errors) continue;
         const double off = tint.value[c] * errors->residual.At(i, c, moments.value.data());
         const double missed = tint.value[c] * errors->Missed(i * channels + c, moments.value.data());
+        sum.value[0].value[c] += off;
         of_residuals_[0][c].Add(off, missed);
         const double other = tint.value[c] * moments.value[0] * errors->value[i * channels + c];
         sum.error[0].value[c] += other;
         sum.indirect.value[c] += other;
-        share = std::max(share, std::abs(off) + missed);
+        share = std::max(share, ErrorSum::RestOf(off, missed));
       }
-      if (errors) shares_.emplace_back(i, share);
+      if (errors) shares_.push_back({i, share, most_tint * moments.value[0]});
     });
   }
   if (!errors) return;

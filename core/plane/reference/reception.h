@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "core/plane/reference/error_sum.h"
@@ -21,11 +20,11 @@ namespace flatlight {
 
 // What is known of the error of a light.
 struct LightErrors {
-  PanelLight residual;         // By how much the light's own reflection differs from it.
-  std::vector<double> size;    // The largest residual, and
-  std::vector<double> steep;   // the largest slope of it, by the panel's place in [-1, 1].
+  PanelLight residual;        // By how much the light's own reflection differs from it. Irradiance has it in its value.
+  std::vector<double> size;   // The largest residual, and
+  std::vector<double> steep;  // the largest slope of it, by the panel's place in [-1, 1].
   std::vector<double> missed;  // What it may be off by itself, where it is not smooth: the mean, on any panel;
-  std::vector<double> mean, root_mean_square, most;  // and as seen between events.
+  std::vector<double> mean, in_all, root_mean_square, most;  // and as seen between events.
   // Bounds on how far the true light is from that reflection: by panel, then channel.
   std::vector<double> value;
   std::vector<double> slope;  // Of its derivative by arc length.
@@ -55,6 +54,7 @@ class Reception {
       : scene_(caster.scene()),
         charts_(charts),
         count_(kLightCoefficients + 2, kKernelDigits),
+        high_count_(count_, PointCount(kResidualCoefficients - 1, kKernelDigits / 2)),
         outlook_(caster, charts),
         end_errors_(caster.scene()) {
     if (specular) specular_.emplace(caster, charts, *specular);
@@ -70,9 +70,13 @@ class Reception {
   // it holds nothing it is found, and filled. Null: it is found.
   Received At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
               int derivatives, std::optional<SpecularSight>* sight = nullptr);
-  // What each panel's residual adds to the error of irradiance in the channel where it is largest, at the receiver of
-  // the last call: panels and values.
-  const std::vector<std::pair<std::size_t, double>>& shares() const { return shares_; }
+  // What each panel's errors add to that of irradiance at the receiver of the last call.
+  struct Share {
+    std::size_t panel = 0;
+    double of_residual = 0;  // In the channel where it is largest.
+    double weight = 0;       // Of LightErrors::value.
+  };
+  const std::vector<Share>& shares() const { return shares_; }
 
  private:
   void AddPiece(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
@@ -84,10 +88,10 @@ class Reception {
 
   const Scene& scene_;
   const std::vector<Chart>& charts_;
-  PointCount count_;
+  PointCount count_, high_count_;
   Outlook outlook_;
   std::optional<SpecularGather> specular_;
-  std::vector<std::pair<std::size_t, double>> shares_;
+  std::vector<Share> shares_;
   ErrorSum of_residuals_[3][kMaxChannels];  // By derivative.
   EndErrors end_errors_;
 };

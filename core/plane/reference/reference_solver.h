@@ -73,6 +73,16 @@ class ReferenceSolver {
 
  private:
   struct Worker;
+  // Of what errors are relative to, and of the probe's mean.
+  static constexpr double kFloor = 0.01;
+  // A point that is no better after so many rounds has no say any more.
+  static constexpr int kMostIdleRounds = 3;
+  // To which equations are solved in the end: of the target error; and at least.
+  static constexpr double kTolerance = 1e-3;
+  static constexpr double kLeastTolerance = 1e-15;
+  static double Relative(double error, double size) {
+    return error == 0 ? 0 : size > 0 ? error / size : std::numeric_limits<double>::infinity();
+  }
   // How far ways over mirrors and glass are followed from a point, and what that leaves of its bound.
   struct ViewLimit {
     double least_share = 0;
@@ -81,7 +91,19 @@ class ReferenceSolver {
     double before = std::numeric_limits<double>::infinity();  // Unfollowed, when ways were last followed further.
     std::optional<SpecularSight> sight = {};                  // Kept from round to round, if there is memory for it.
   };
-  enum class Step : std::uint8_t { kDirect, kEvents, kRows, kSolve, kCheck, kSpread, kBound, kSlopes, kPoints, kSplit };
+  enum class Step : std::uint8_t {
+    kDirect,
+    kEvents,
+    kRows,
+    kSolve,
+    kCheck,
+    kSpread,
+    kCorrect,
+    kBound,
+    kSlopes,
+    kPoints,
+    kSplit
+  };
 
   std::unique_ptr<Worker> Take();
   void Return(std::unique_ptr<Worker> worker);
@@ -93,6 +115,8 @@ class ReferenceSolver {
   void FindSlopes(Worker& worker, std::size_t panel);
   void Gather(Worker& worker, std::size_t point);
   void NextStep();
+  // Of all workers: shares_, and how much a bound on each panel's light adds to points.
+  void CollectShares(std::vector<double>& importance);
   void EndPoints();
   double SizeAt(std::size_t point, int channel) const;
   void FollowFurther();
@@ -101,7 +125,7 @@ class ReferenceSolver {
   void StartRound();
   // Of a round, once the light of panels is known.
   Step FirstOfPoints() const { return options_.derivatives < 2 ? Step::kPoints : Step::kSlopes; }
-  bool IsWhole() const { return step_ == Step::kSolve || step_ == Step::kBound; }
+  bool IsWhole() const { return step_ == Step::kSolve || step_ == Step::kCorrect || step_ == Step::kBound; }
 
   std::shared_ptr<const Scene> scene_;
   ReferenceOptions options_;
@@ -109,7 +133,8 @@ class ReferenceSolver {
   std::unique_ptr<SolvedWorld> world_;
   std::optional<EventFinder> finder_;  // Until the first mesh.
   std::vector<std::vector<EventPlace>> found_;
-  double tolerance_;  // To which equations are solved.
+  double tolerance_;         // To which equations are solved in the end, and
+  double coarse_tolerance_;  // in this round.
   LightSolver lights_;
   std::optional<SpecularViewOptions> specular_;  // Of rows.
   std::vector<const Receiver*> points_;
