@@ -19,6 +19,7 @@
 #include "server/scheduler/task_queue.h"
 #include "server/service/backend.h"
 #include "server/service/build_version.h"
+#include "server/service/call_interceptor.h"
 #include "server/service/call_telemetry.h"
 #include "server/service/connection_limits.h"
 #include "server/service/job_format.h"
@@ -403,7 +404,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   SetConnectionLimits(builder, options.limits, options.keepalive, options.connection_memory_bytes);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
-  interceptors.push_back(parts->telemetry.MakeFactory());
+  interceptors.push_back(std::make_unique<CallInterceptors>(parts->telemetry));
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
   builder.RegisterService(&parts->render_service);
   builder.RegisterService(&parts->scene_service);
