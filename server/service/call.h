@@ -7,9 +7,11 @@
 #include <concepts>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "absl/status/statusor.h"
+#include "flatlight/v1/server_service.pb.h"
 #include "flatlight/v1/sharing.pb.h"
 #include "grpcpp/server_context.h"
 #include "grpcpp/support/server_callback.h"
@@ -45,7 +47,7 @@ inline Proceed WhileWanted(const Backend& backend, const grpc::CallbackServerCon
   };
 }
 
-// The job or scene that an answered call is about; empty if there is none, or not yet (an upload under way).
+// The job, scene or whatever else an answered call is about; empty if there is none, or not yet (an upload under way).
 template <class Request, class Response>
 std::string ResourceOf(const Request& request, const absl::StatusOr<Response>& response) {
   if constexpr (requires {
@@ -53,6 +55,8 @@ std::string ResourceOf(const Request& request, const absl::StatusOr<Response>& r
                   response->received_bytes();
                 }) {
     return response.ok() && response->received_bytes() == request.total_bytes() ? response->name() : "";
+  } else if constexpr (std::is_same_v<Request, v1::RotateWebhookSecretRequest>) {
+    return response.ok() ? "webhook-secret" : "";
   } else if constexpr (requires {
                          { request.name() } -> std::convertible_to<std::string>;
                        }) {

@@ -319,6 +319,7 @@ absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const Caller& 
   if (!id.ok()) return id.status();
   if (absl::Status allowed = backend.access.CheckRight(caller, JobRight::kOwn, *id); !allowed.ok()) return allowed;
   if (absl::Status deleted = backend.scheduler.Delete(*id); !deleted.ok()) return deleted;
+  backend.job_messages.Forget(*id);
   return v1::DeleteJobResponse();
 }
 
