@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::size_t kMaxRequestIdBytes = 128;
 // Of a list of jobs, unless one alone is longer. Clients of gRPC take 4 MiB.
-constexpr std::size_t kMaxPageBytes = 2u << 20;
+constexpr std::size_t kMaxPageBytes = 1u << 20;
 
 struct PlannedScene {
   std::shared_ptr<const Scene> scene;

@@ -281,7 +281,7 @@ TEST_F(CallsTest, APageOfLargeJobsHasFewerOfThem) {
   request.mutable_scene()->mutable_scene()->set_name(std::string(1000, 'x'));
   for (const std::string& name : SkipNames()) request.mutable_settings()->add_no_skip(name);
   constexpr int kPage = 1000;
-  constexpr std::size_t kMostBytes = 2u << 20;
+  constexpr std::size_t kMostBytes = 1u << 20;
   std::vector<std::string> created;
   std::size_t bytes = 0;
   for (int i = 0; i < kPage; ++i) {
