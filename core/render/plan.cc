@@ -105,7 +105,7 @@ void CheckReferenceDerivatives(const Scene& scene, Diagnostics& diagnostics) {
   if (scene.traits().has_beziers) {
     diagnostics.Add(path, "reference gives none of light reflected in a scene with Bézier curves" + cure);
   } else if (!scene.traits().lambertian) {
-    diagnostics.Add(path, "reference gives none of light that comes over mirrors and glass" + cure);
+    diagnostics.Add(path, "reference gives none of light that mirrors, glass and phong lobes reflect" + cure);
   }
 }
 
@@ -118,8 +118,8 @@ void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& d
     if (settings.max_bounces && !scene.traits().lambertian) {
       diagnostics.Add("settings.maxBounces",
                       "is " + Text(*settings.max_bounces) +
-                          ", but over mirrors and through glass reference counts all bounces: leave this out, set it "
-                          "to 0, or use path-tracing");
+                          ", but over mirrors, glass and phong lobes reference counts all bounces: leave this out, set "
+                          "it to 0, or use path-tracing");
     }
   }
   CheckFading(scene, settings, diagnostics);

@@ -17,6 +17,7 @@
 #include "core/plane/exact/exact.h"
 #include "core/plane/exact/light_solver.h"
 #include "core/plane/ray_caster.h"
+#include "core/plane/reference/bounded_solver.h"
 #include "core/plane/reference/radiosity.h"
 #include "core/plane/reference/solved_world.h"
 #include "core/plane/reference/specular_view.h"
@@ -36,40 +37,28 @@ struct ReferenceOptions {
 
 // Light of all bounces at the points of a scene's probes: direct light in closed form, what curves reflect from panels
 // that are split until the bound on the error is small enough. Works in rounds, each with a finer mesh.
-class ReferenceSolver {
+class ReferenceSolver final : public BoundedSolver {
  public:
   // The caster's scene has the world of `scene`. Requires CanFollow(scene), and no derivatives nor max_bounces where
   // something is a mirror or glass and light is reflected. `before`: to go on from, of the
   // same world, channels and bounces; its caster is used. Its panels are the first round's; null: there is none.
   ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
                   const ReferenceOptions& options, std::unique_ptr<SolvedWorld> before = nullptr);
-  ~ReferenceSolver();
+  ~ReferenceSolver() override;
 
-  // Works for about `budget`, until done or cancelled. For equal rounds done the values have equal bits.
   void Advance(Executor& executor, int threads, const Cancellation& cancellation, const Clock& clock,
-               Clock::Duration budget);
-  enum class State : std::uint8_t {
-    kWorks,
-    kReached,   // The bounds are as small as wanted.
-    kExhausted  // Rounding, or the memory that is allowed, lets them become no smaller.
-  };
-  State state() const { return state_; }
-
-  // By point, after the last round that was finished; empty before the first was.
-  const std::vector<ExactValue>& values() const { return values_; }
-  // By point, before the first round is done: direct light as far as it is known, and bounds on all light.
-  std::vector<ExactValue> FirstValues() const;
-  // The largest bound in units of max(irradiance, 1 % of its probe's mean).
-  double relative_error() const { return relative_error_; }
-  double first_relative_error() const { return first_relative_error_; }
-  int rounds() const { return rounds_; }
+               Clock::Duration budget) override;
+  State state() const override { return state_; }
+  const std::vector<ExactValue>& values() const override { return values_; }
+  std::vector<ExactValue> FirstValues() const override;
+  double relative_error() const override { return relative_error_; }
+  double first_relative_error() const override { return first_relative_error_; }
+  int rounds() const override { return rounds_; }
   std::size_t panels() const { return world_->radiosity->mesh().size(); }
   // The panels, and what they reflect, after the last round. Only when the work is done.
   const PanelMesh& mesh() const { return world_->radiosity->mesh(); }
   const PanelLight& light() const { return world_->radiosity->light(); }
-  // What it knows of the world, for solvers to come. Requires kReached; but for values() and errors nothing is to be
-  // called afterwards.
-  std::unique_ptr<SolvedWorld> TakeWorld();
+  std::unique_ptr<SolvedWorld> TakeWorld() override;
 
  private:
   struct Worker;
