@@ -66,18 +66,33 @@ std::optional<Motion> MovingWays::MissOf(const MovingEnd& end, const Motion& the
   return Motion::Constant(1) - sine * sine;
 }
 
-std::optional<Motion> MovingWays::NumberOf(const Directions& directions, const MovingEnd* moving, double found) {
+std::optional<Motion> MovingWays::NumberOf(const Directions& directions, const std::shared_ptr<const MovingEnd>& moving,
+                                           double found) {
+  if (!moving) return Motion::Constant(found);
+  if (moving->between) {
+    const MovingEnd::Between& between = *moving->between;
+    const std::optional<Motion> begin = NumberOf(directions, between.begins, between.begin);
+    const std::optional<Motion> end = NumberOf(directions, between.ends, between.end);
+    if (!begin || !end) return std::nullopt;
+    const double part = (found - between.begin) / (between.end - between.begin);
+    return *begin + part * (*end - *begin);
+  }
+  const auto known = numbers_.find(moving.get());
+  if (known != numbers_.end()) return known->second;
+  return numbers_[moving.get()] = FindNumber(directions, *moving, found);
+}
+
+std::optional<Motion> MovingWays::FindNumber(const Directions& directions, const MovingEnd& moving, double found) {
   Motion number = Motion::Constant(found);
-  if (moving == nullptr) return number;
   const Motion beside{{directions.At(found), directions.Slope(found), 0}};
-  const std::optional<Motion> still = MissOf(*moving, beside, false);
+  const std::optional<Motion> still = MissOf(moving, beside, false);
   if (!still || (*still)[1] == 0) return std::nullopt;
   // Newton's method with the slope where it began: each step makes one term more right, and the first one better.
   const double slope = (*still)[1];
   double change = 0;
   for (int step = 0; step < kMostSteps; ++step) {
     const std::optional<Direction> at = At(directions, number);
-    const std::optional<Motion> miss = at ? MissOf(*moving, at->theta, true) : std::nullopt;
+    const std::optional<Motion> miss = at ? MissOf(moving, at->theta, true) : std::nullopt;
     if (!miss) return std::nullopt;
     change = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -96,10 +111,12 @@ const std::optional<MovingWays::Range>& MovingWays::RangeOf(const Directions& di
   if (!is_new) return at->second;
   std::optional<Range> range(Range{Motion::Constant(directions.from), Motion::Constant(directions.to)});
   if (directions.outer) {
-    const std::optional<Motion> from = NumberOf(*directions.outer, directions.begins.get(), directions.from);
-    const std::optional<Motion> to = NumberOf(*directions.outer, directions.ends.get(), directions.to);
-    if (from && to) range = Range{*from, *to};
-    else range.reset();
+    const std::optional<Motion> from = NumberOf(*directions.outer, directions.begins, directions.from);
+    const std::optional<Motion> to = NumberOf(*directions.outer, directions.ends, directions.to);
+    if (from && to)
+      range = Range{*from, *to};
+    else
+      range.reset();
   }
   return ranges_[&directions] = range;
 }

@@ -3,7 +3,7 @@
 #ifndef FLATLIGHT_CORE_PLANE_REFERENCE_MOVING_WAYS_H_
 #define FLATLIGHT_CORE_PLANE_REFERENCE_MOVING_WAYS_H_
 
-#include <cstdint>
+#include <memory>
 #include <optional>
 #include <unordered_map>
 
@@ -34,7 +34,10 @@ class MovingWays {
 
   // The number that an end of a stretch of directions moves to, near where it was found; `moving` may be null. Absent
   // where it cannot be told: two events coincide.
-  std::optional<Motion> NumberOf(const Directions& directions, const MovingEnd* moving, double found);
+  std::optional<Motion> NumberOf(const Directions& directions, const std::shared_ptr<const MovingEnd>& moving,
+                                 double found);
+  // The same of one that is not known any longer than this.
+  std::optional<Motion> FindNumber(const Directions& directions, const MovingEnd& moving, double found);
 
   // Theta, and its derivative by the number, of a number that moves. Absent where ends of the directions are.
   struct Direction {
@@ -56,6 +59,7 @@ class MovingWays {
   const Scene& scene_;
   const Receiver& receiver_;
   std::unordered_map<const Directions*, std::optional<Range>> ranges_;
+  std::unordered_map<const MovingEnd*, std::optional<Motion>> numbers_;  // Of those that are not in between.
 };
 
 }  // namespace flatlight

@@ -18,8 +18,8 @@ namespace {
 constexpr double kRounding = 8 * kUnitRoundoff;
 // A largest weight so many times the mean one may be larger yet. (On a point its moments say kLightCoefficients^2.)
 constexpr double kUneven = 24;
-// Slopes and second derivatives, by a panel's place in [-1, 1], of an error of light of size 1: as with kErrorSlope, and
-// of what was missed between the points of a panel.
+// Slopes and second derivatives, by a panel's place in [-1, 1], of an error of light of size 1: as with kErrorSlope,
+// and of what was missed between the points of a panel.
 constexpr double kErrorBend = 24;
 constexpr double kMissedSlope = 8, kMissedBend = 64;
 
@@ -59,7 +59,7 @@ Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const Pa
     if (sight == nullptr) sight = &own;
     if (!sight->has_value()) {
       const std::vector<SpecularPiece>& pieces = specular_->view().From(receiver);
-      *sight = SpecularSight{pieces, specular_->view().lost()};
+      *sight = SpecularSight{pieces, specular_->view().lost(), specular_->view().unfollowed()};
     }
     if (derivatives == 0)
       AddSpecular(receiver, mesh, light, errors, **sight, sum);
@@ -189,6 +189,7 @@ void Reception::AddMovingSpecular(const Receiver& receiver, const PanelMesh& mes
   const std::size_t channels = light.channels();
   SpecularDerivatives moving(scene_, charts_, receiver, specular_->tolerance(), derivatives);
   UnfollowedMotion unfollowed(sight.lost, derivatives);
+  for (const UnfollowedBeam& beam : sight.unfollowed) unfollowed.AddUnfollowed(moving.OfUnfollowed(beam));
   for (const SpecularPiece& piece : sight.pieces) {
     const Spectrum& tint = piece.way->tint;
     const Spectrum emitted = EmittedBy(scene_, piece);

@@ -18,8 +18,8 @@
 
 namespace flatlight {
 
-// Slope, by a panel's place in [-1, 1], of what an error of light of size 1 leaves after a reflection: it is smooth then
-// (Markov's inequality for cubics).
+// Slope, by a panel's place in [-1, 1], of what an error of light of size 1 leaves after a reflection: it is smooth
+// then (Markov's inequality for cubics).
 inline constexpr double kErrorSlope = 9;
 
 // What is known of the error of a light.

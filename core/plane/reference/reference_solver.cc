@@ -300,14 +300,15 @@ void ReferenceSolver::FindSlopes(Worker& worker, std::size_t i) {
     const Chart& chart = world_->charts[static_cast<std::size_t>(panel.element)];
     const double speed = std::min(chart.At(panel.low).speed, chart.At(panel.high).speed);
     const double by_length = kErrorSlope * 2 / ((panel.high - panel.low) * speed);
-    for (std::size_t at = i * channels_; at < (i + 1) * channels_; ++at) errors.slope[at] = by_length * errors.value[at];
+    for (std::size_t at = i * channels_; at < (i + 1) * channels_; ++at)
+      errors.slope[at] = by_length * errors.value[at];
     return;
   }
   for (const std::size_t k : {std::size_t{0}, kLightCoefficients / 2, kLightCoefficients - 1}) {
     const Receiver receiver = world_->charts[static_cast<std::size_t>(panel.element)].ReceiverAt(
         panel.element, panel.At(rule.node[k]), panel.side);
-    const Received received = worker.reception.At(receiver, world_->radiosity->mesh(), world_->radiosity->light(),
-                                                  &errors, 1);
+    const Received received =
+        worker.reception.At(receiver, world_->radiosity->mesh(), world_->radiosity->light(), &errors, 1);
     for (std::size_t c = 0; c < channels_; ++c) {
       double& slope = errors.slope[i * channels_ + c];
       slope = std::max(slope, received.error[1].value[c] + received.rounding[1].value[c]);

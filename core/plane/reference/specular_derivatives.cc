@@ -34,12 +34,28 @@ Motion Find(const Element& element, const Chart& chart, const VectorSeries<3>& p
 
 SpecularDerivatives::Moments SpecularDerivatives::OfPiece(const SpecularPiece& piece) {
   const Directions& directions = *piece.directions;
-  const std::optional<Motion> from = ways_.NumberOf(directions, piece.begins.get(), piece.begin);
-  const std::optional<Motion> to = ways_.NumberOf(directions, piece.ends.get(), piece.end);
+  const std::optional<Motion> from = ways_.NumberOf(directions, piece.begins, piece.begin);
+  const std::optional<Motion> to = ways_.NumberOf(directions, piece.ends, piece.end);
   if (!from || !to) return Moments{.known = false};
-  if (!piece.way->straight) return Of(piece, nullptr, 1, *from, *to);
+  return piece.way->straight ? OfSines(directions, *from, *to) : Of(piece, nullptr, 1, *from, *to);
+}
+
+SpecularDerivatives::Moments SpecularDerivatives::OfUnfollowed(const UnfollowedBeam& beam) {
+  const std::optional<Motion> from = ways_.NumberOf(*beam.directions, beam.begins, beam.begin);
+  const std::optional<Motion> to = ways_.NumberOf(*beam.directions, beam.ends, beam.end);
   Moments all;
-  const std::optional<MovingWays::Direction> begin = ways_.At(directions, *from), end = ways_.At(directions, *to);
+  if (from && to)
+    all = OfSines(*beam.directions, *from, *to);
+  else
+    all.known = false;
+  for (double& part : all.of_value) part *= beam.share;
+  return all;
+}
+
+SpecularDerivatives::Moments SpecularDerivatives::OfSines(const Directions& directions, const Motion& from,
+                                                          const Motion& to) {
+  Moments all;
+  const std::optional<MovingWays::Direction> begin = ways_.At(directions, from), end = ways_.At(directions, to);
   if (!begin || !end) return Moments{.known = false};
   const Motion sines = SinCosSeries<3>(end->theta).sin - SinCosSeries<3>(begin->theta).sin;
   for (std::size_t m = 0; m < orders_; ++m) {
@@ -53,10 +69,8 @@ SpecularDerivatives::Moments SpecularDerivatives::OfPanel(const SpecularPiece& p
                                                           std::size_t count, const Cuts::Cut& begin,
                                                           const Cuts::Cut& end) {
   const auto number_of = [&](const Cuts::Cut& cut) {
-    const MovingEnd* const own = cut.at == piece.begin ? piece.begins.get() : piece.ends.get();
-    if (!cut.mark) return ways_.NumberOf(*piece.directions, own, cut.at);
-    const MovingEnd passing{.way = piece.way, .mark = *cut.mark};
-    return ways_.NumberOf(*piece.directions, &passing, cut.at);
+    if (cut.mark) return ways_.FindNumber(*piece.directions, {.way = piece.way, .mark = *cut.mark}, cut.at);
+    return ways_.NumberOf(*piece.directions, cut.at == piece.begin ? piece.begins : piece.ends, cut.at);
   };
   const std::optional<Motion> from = number_of(begin), to = number_of(end);
   if (!from || !to) return Moments{.known = false};
@@ -67,13 +81,12 @@ bool SpecularDerivatives::AddPoint(const SpecularPiece& piece, const Panel* pane
                                    const Directions& part, const Motion& from, const Motion& to, double x,
                                    double weight, Moments& sum) {
   const double within = part.Outward(x), slope = part.Slope(x);
-  const std::optional<MovingWays::Direction> direction =
-      ways_.At(*piece.directions, from + within * (to - from));
+  const std::optional<MovingWays::Direction> direction = ways_.At(*piece.directions, from + within * (to - from));
   if (!direction) return false;
   const std::optional<ChainRays<3>> rays = ways_.Follow(*piece.way, direction->theta);
   if (!rays) return false;
-  const Motion share = (weight * slope) * ((to - from) * direction->slope) *
-                       (SinCosSeries<3>(direction->theta).cos * rays->flux);
+  const Motion share =
+      (weight * slope) * ((to - from) * direction->slope) * (SinCosSeries<3>(direction->theta).cos * rays->flux);
   const double by_value[3] = {share[0], share[1], 2 * share[2]};
   if (panel == nullptr) {
     for (std::size_t m = 0; m < orders_; ++m) {
@@ -102,8 +115,8 @@ bool SpecularDerivatives::AddPoint(const SpecularPiece& piece, const Panel* pane
   return true;
 }
 
-SpecularDerivatives::Moments SpecularDerivatives::Of(const SpecularPiece& piece, const Panel* panel,
-                                                     std::size_t count, const Motion& from, const Motion& to) {
+SpecularDerivatives::Moments SpecularDerivatives::Of(const SpecularPiece& piece, const Panel* panel, std::size_t count,
+                                                     const Motion& from, const Motion& to) {
   // As SpecularGather has it.
   const bool eased = panel != nullptr && scene_.element(piece.element).kind == Element::Kind::kArc;
   const Directions part{0, 1, eased, nullptr};

@@ -40,7 +40,8 @@ class SpecularDerivatives {
     std::array<double, 3> of_value{}, of_slope{}, of_bend{};
     bool known = true;  // If not, ends of the part move in a way that could not be told.
 
-    // What the derivative of an order may be off by for light that is off by 1, with such slopes and second derivatives.
+    // What the derivative of an order may be off by for light that is off by 1, with such slopes and second
+    // derivatives.
     double OfLight(std::size_t order, double slope, double bend) const {
       return of_value[order] + slope * of_slope[order] + bend * of_bend[order];
     }
@@ -51,8 +52,12 @@ class SpecularDerivatives {
   // Between two numbers of the piece; what has no mark is an end of it.
   Moments OfPanel(const SpecularPiece& piece, const Panel& panel, std::size_t count, const Cuts::Cut& begin,
                   const Cuts::Cut& end);
+  // What could have come that way, if it moves as its ends do: of_value.
+  Moments OfUnfollowed(const UnfollowedBeam& beam);
 
  private:
+  // From radiance 1 between two directions.
+  Moments OfSines(const Directions& directions, const Motion& from, const Motion& to);
   Moments Of(const SpecularPiece& piece, const Panel* panel, std::size_t count, const Motion& from, const Motion& to);
   // Adds a point of the quadrature: of directions by a number in [0, 1] of the part. Returns false where a ray fails.
   bool AddPoint(const SpecularPiece& piece, const Panel* panel, std::size_t count, const Directions& part,

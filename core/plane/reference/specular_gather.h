@@ -56,8 +56,8 @@ class SpecularGather {
       add(panel, [&] { return Of(receiver, piece, &mesh.panels()[panel], count, begin.at, end.at); });
     });
   }
-  // Calls visit(panel, begin, end) for them: the numbers between which a panel is seen; what has no mark there is an end
-  // of the piece.
+  // Calls visit(panel, begin, end) for them: the numbers between which a panel is seen; what has no mark there is an
+  // end of the piece.
   template <typename Visit>
   void VisitPanels(const Receiver& receiver, const SpecularPiece& piece, const PanelMesh& mesh,
                    const Visit& visit) const {

@@ -145,7 +145,7 @@ std::size_t BytesOf(const SpecularPiece& piece) {
 std::size_t SpecularSight::bytes() const {
   std::size_t bytes = 0;
   for (const SpecularPiece& piece : pieces) bytes += BytesOf(piece);
-  return bytes;
+  return bytes + unfollowed.size() * sizeof(UnfollowedBeam);
 }
 
 bool HasSpecular(const Scene& scene) {
@@ -177,6 +177,7 @@ SpecularView::SpecularView(const RayCaster& caster, const SpecularViewOptions& o
 
 const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
   pieces_.clear();
+  unfollowed_.clear();
   lost_ = 0;
   numbers_ = 0;
   const auto way = std::make_shared<SpecularWay>();
@@ -193,6 +194,8 @@ const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
     beams_.pop();
     if (beam.weight < options_.least_share || grown >= options_.most_ways) {
       lost_ += beam.weight;
+      unfollowed_.push_back(
+          {beam.directions, beam.begin, beam.end, beam.begins, beam.ends, beam.share * beam.way->tint.Max()});
       continue;
     }
     ++grown;
@@ -210,18 +213,24 @@ void SpecularView::Fan(const std::shared_ptr<const SpecularWay>& way,
     if (!ray) return std::nullopt;
     return DirectedLine{ray->direction, Cross(ray->direction, ray->from - Point2{})};
   };
+  std::shared_ptr<const MovingEnd> between;
+  if (stretch.begins || stretch.ends) {
+    between = std::make_shared<const MovingEnd>(
+        MovingEnd{.way = nullptr,
+                  .mark = {},
+                  .between = MovingEnd::Between{stretch.begin, stretch.end, stretch.begins, stretch.ends}});
+  }
   LineFamily::Fit(
       stretch.begin, stretch.end, line, hopeful,
       [&](const LineFamily& lines) {
-        // Parts in between end where they do for the fit alone.
         const double begin = lines.begin + LineFamily::kOverlap, end = lines.end - LineFamily::kOverlap;
         Push({.way = way,
               .directions = directions,
               .lines = lines,
               .begin = begin,
               .end = end,
-              .begins = begin <= stretch.begin + LineFamily::kOverlap ? stretch.begins : nullptr,
-              .ends = end >= stretch.end - LineFamily::kOverlap ? stretch.ends : nullptr});
+              .begins = begin <= stretch.begin + LineFamily::kOverlap ? stretch.begins : between,
+              .ends = end >= stretch.end - LineFamily::kOverlap ? stretch.ends : between});
       },
       fit);
 }
@@ -314,14 +323,15 @@ void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& m
     }
   }
   cuts.push_back(end);
-  std::shared_ptr<const MovingEnd> total;
-  if (cuts.size() > 2) {
-    total = std::make_shared<const MovingEnd>(
-        MovingEnd{.way = beam.way, .mark = {}, .border = met.element, .side = met.side, .far = met.far});
-  }
+  std::shared_ptr<const MovingEnd> begins = stretch.begins;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    const Stretch part{cuts[i], cuts[i + 1], i == 0 ? stretch.begins : total,
-                       i + 2 == cuts.size() ? stretch.ends : total};
+    std::shared_ptr<const MovingEnd> ends = stretch.ends;
+    if (i + 2 < cuts.size()) {
+      ends = std::make_shared<const MovingEnd>(
+          MovingEnd{.way = beam.way, .mark = {}, .border = met.element, .side = met.side, .far = met.far});
+    }
+    const Stretch part{cuts[i], cuts[i + 1], begins, ends};
+    begins = ends;
     Turn(receiver, beam, met, false, part);
     Turn(receiver, beam, met, true, part);
   }
@@ -365,6 +375,8 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
                       beam.way->tint.Max() * (crosses ? std::max(1.0, 1 / ratio) : 1);
   if (most < options_.least_share) {
     lost_ += most;
+    unfollowed_.push_back({beam.directions, begin, end, stretch.begins, stretch.ends,
+                           beam.share * beam.way->tint.Max() * (crosses ? std::max(1.0, 1 / ratio) : 1)});
     return;
   }
   auto way = std::make_shared<SpecularWay>(*beam.way);

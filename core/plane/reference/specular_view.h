@@ -67,12 +67,19 @@ std::optional<double> DistanceBehind(const Scene& scene, const Receiver& receive
 
 // Why a stretch of directions ends where it does: so its end moves as the receiver does.
 struct MovingEnd {
+  // A stretch that is cut for no such reason: at places that keep their parts of it.
+  struct Between {
+    double begin = 0, end = 0;
+    std::shared_ptr<const MovingEnd> begins, ends;  // Null: do not move.
+  };
+
   std::shared_ptr<const SpecularWay> way;  // Of the ray that ends it.
   LineMark mark;                           // That ray passes this behind the last link;
-  // or, if there is a border, all rays beyond are reflected totally there.
+  // or, if there is a border, all rays beyond are reflected totally there;
   ElementId border = ElementId::kNone;
-  Side side = Side::kFront;  // On which the border is met,
-  bool far = false;          // and where, as in ChainLink.
+  Side side = Side::kFront;             // on which the border is met,
+  bool far = false;                     // and where, as in ChainLink;
+  std::optional<Between> between = {};  // or all this is nothing.
 };
 
 // Directions theta by a number in [0, 1] of which all that follows is a smooth function.
@@ -111,10 +118,19 @@ struct SpecularPiece {
 // What a piece holds, its way included, about.
 std::size_t BytesOf(const SpecularPiece& piece);
 
+// Ways that are not followed further.
+struct UnfollowedBeam {
+  std::shared_ptr<const Directions> directions;
+  double begin = 0, end = 0;
+  std::shared_ptr<const MovingEnd> begins, ends;
+  double share = 0;  // Of radiance that could come, at most: times the difference of sines it is what is lost.
+};
+
 // What is seen from a point over mirrors and through glass.
 struct SpecularSight {
   std::vector<SpecularPiece> pieces;
-  double lost = 0;  // What else could have come: irradiance per radiance.
+  double lost = 0;                         // What else could have come: irradiance per radiance,
+  std::vector<UnfollowedBeam> unfollowed;  // in these, and beside rays that fail.
 
   std::size_t bytes() const;
 };
@@ -146,6 +162,7 @@ class SpecularView {
   const std::vector<SpecularPiece>& From(const Receiver& receiver);
   // What ways that were not followed further could have brought the receiver of the last call: irradiance per radiance.
   double lost() const { return lost_; }
+  const std::vector<UnfollowedBeam>& unfollowed() const { return unfollowed_; }
 
  private:
   struct Beam {
@@ -202,6 +219,7 @@ class SpecularView {
   std::size_t numbers_ = 0;
   std::vector<SpecularPiece> pieces_;
   double lost_ = 0;
+  std::vector<UnfollowedBeam> unfollowed_;
 };
 
 }  // namespace flatlight

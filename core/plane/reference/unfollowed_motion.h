@@ -13,14 +13,19 @@
 namespace flatlight {
 
 // What is not known of irradiance per radiance, and of its derivatives, over mirrors and through glass: what quadrature
-// is off by, and what ways could have brought that were not followed. The weight of these says nothing of derivatives.
-// But they begin as the ways that were followed do, and what is seen over them moves as those move: their derivatives
-// are as large beside their weight as those of nine tenths of the parts that were seen are, twice that to be safe.
+// is off by, and what ways could have brought that were not followed. Their weight says nothing of derivatives, but how
+// their ends move does: a narrow one may just come into sight. What is seen in between moves as what is seen elsewhere
+// does: its derivatives are as large beside its weight as those of nine tenths of the parts that were seen are. Twice
+// both, to be safe.
 class UnfollowedMotion {
  public:
   // `lost`: irradiance per radiance.
   UnfollowedMotion(double lost, int derivatives) : lost_(lost), orders_(static_cast<std::size_t>(derivatives) + 1) {}
 
+  void AddUnfollowed(const SpecularDerivatives::Moments& beam) {
+    known_ &= beam.known;
+    for (std::size_t m = 1; m < orders_; ++m) off_[m] += 2 * beam.of_value[m];
+  }
   // A part of what is seen.
   void Add(const SpecularDerivatives::Moments& part) {
     known_ &= part.known;
