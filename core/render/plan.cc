@@ -99,22 +99,15 @@ void RefuseSampling(const Settings& settings, Diagnostics& diagnostics) {
   if (settings.seed.has_value()) diagnostics.Add("settings.seed", reason);
 }
 
-// Of light that is reflected.
-void CheckReferenceDerivatives(const Scene& scene, Diagnostics& diagnostics) {
-  const std::string path = "settings.derivatives", cure = ": leave this out, set max bounces to 0, or use ray-tracing";
-  if (scene.traits().has_beziers) {
-    diagnostics.Add(path, "reference gives none of light reflected in a scene with Bézier curves" + cure);
-  } else if (!scene.traits().lambertian) {
-    diagnostics.Add(path, "reference gives none of light that comes over mirrors and glass" + cure);
-  }
-}
-
 void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& diagnostics) {
   RefuseSampling(settings, diagnostics);
   if (!DirectLightOnly(scene, settings)) {
     CheckPanels(scene, "settings.method", "path-tracing", diagnostics);
-    if (settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone)
-      CheckReferenceDerivatives(scene, diagnostics);
+    if (settings.derivatives.value_or(Derivatives::kNone) != Derivatives::kNone && scene.traits().has_beziers) {
+      diagnostics.Add("settings.derivatives",
+                      "reference gives none of light reflected in a scene with Bézier curves: leave this out, set max "
+                      "bounces to 0, or use ray-tracing");
+    }
     if (settings.max_bounces && !scene.traits().lambertian) {
       diagnostics.Add("settings.maxBounces",
                       "is " + Text(*settings.max_bounces) +

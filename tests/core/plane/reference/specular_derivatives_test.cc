@@ -78,8 +78,9 @@ void ExpectDerivativesOfNeighbours(const SceneMaker& scene, Point2 middle, doubl
     EXPECT_NEAR(at->gradient[0], gradient.value, at->gradient_error[0] + 4 * gradient.error + tolerance) << which;
     EXPECT_NEAR(at->hessian[0], hessian.value, at->hessian_error[0] + 4 * hessian.error + tolerance) << which;
     // The differences can tell, and so can the bounds.
-    EXPECT_LE(4 * gradient.error + at->gradient_error[0], 0.02 * std::abs(gradient.value)) << which;
-    EXPECT_LE(4 * hessian.error + at->hessian_error[0], 0.2 * std::abs(hessian.value)) << which;
+    const double size = std::max(std::abs(gradient.value), at->irradiance[0]);
+    EXPECT_LE(4 * gradient.error + at->gradient_error[0], 0.05 * size) << which;
+    EXPECT_LE(4 * hessian.error + at->hessian_error[0], std::max(size, 0.2 * std::abs(hessian.value))) << which;
   }
 }
 
@@ -96,7 +97,7 @@ TEST(SpecularDerivativesTest, APerfectMirrorCompletesARoom) {
   for (SceneMaker* maker : {&half, &whole}) {
     maker->Segment("lamp", {0.4, 0.5}, {0.7, 0.6}, lamp).Segment("plate", {0.3, -0.3}, {0.9, 0.1}, plate);
     maker->Arc("ball", {{1.1, -0.6}, 0.2, 0, -kTurn}, plate);
-    for (const char* curve : {"walls", "plate", "ball"}) maker->Probe(curve, 9);
+    for (const char* curve : {"walls", "plate", "ball"}) maker->Probe(curve, 8);
   }
   const SolvedReference left = SolveReference(half.Build(), Options(1e-4));
   const SolvedReference right = SolveReference(whole.Build(), Options(1e-5));
@@ -113,8 +114,8 @@ TEST(SpecularDerivativesTest, APerfectMirrorCompletesARoom) {
 TEST(SpecularDerivativesTest, LampsInRoundMirrors) {
   SceneMaker maker;
   maker.Segment("lamp", {-0.6, 0.5}, {-0.9, 0.2}, {.radiance = {3}});
-  maker.Arc("ball", {{0.5, 0.4}, 0.3, 0, -kTurn}, MirrorOf(0.9))
-      .Arc("bowl", {{-0.4, 0.9}, 0.5, -0.5, -2}, MirrorOf(0.8));
+  maker.Arc("ball", {{0.5, 0.4}, 0.3, 0, -kTurn}, MirrorOf(0.9));
+  maker.Arc("bowl", {{-0.5, 0.8}, 0.5, 0.5, 1.2}, MirrorOf(0.8));
   maker.Segment("blocker", {0, 0.2}, {0.05, 0.4}).Environment({0.5});
   ExpectDerivativesOfNeighbours(maker, {0.1, -0.4}, 1.7, 1e-5, 1e-3);
 }
@@ -130,7 +131,7 @@ TEST(SpecularDerivativesTest, ALampBehindABallOfGlass) {
   SceneMaker maker;
   maker.Segment("lamp", {0.3, 1}, {-0.3, 0.9}, {.radiance = {3}});
   maker.Arc("ball", {{0, 0.2}, 0.3, 0, -kTurn}, Glass(1.4));
-  ExpectDerivativesOfNeighbours(maker, {0.2, -0.6}, 1.5, 1e-4, 1e-3);
+  ExpectDerivativesOfNeighbours(maker, {0.2, -0.6}, 1.5, 1e-5, 1e-3);
 }
 
 // From below water all light comes from within a cone, whose ends move with the receiver where the surface bends.
@@ -147,7 +148,7 @@ TEST(SpecularDerivativesTest, WallsInARoundMirror) {
   maker.Polyline("walls", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, true, {.reflectance = {0.5}});
   maker.Segment("lamp", {-0.3, 0.95}, {0.3, 0.9}, {.radiance = {5}});
   maker.Arc("bowl", {{0.3, -0.5}, 0.4, 2.5, 2}, MirrorOf(0.9));
-  ExpectDerivativesOfNeighbours(maker, {0.4, 0.1}, 4, 1e-5, 1e-2);
+  ExpectDerivativesOfNeighbours(maker, {0.4, 0.1}, 4, 1e-3, 1e-2);
 }
 
 }  // namespace
