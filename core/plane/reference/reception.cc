@@ -45,6 +45,12 @@ double LightErrors::Missed(std::size_t index, const double* weights) const {
   return factor * weights[0];
 }
 
+void LightErrors::GuessSlopes(const Chart& chart, const Panel& panel, std::size_t i, std::size_t channels) {
+  const double speed = std::min(chart.At(panel.low).speed, chart.At(panel.high).speed);
+  const double by_length = kErrorSlope * 2 / ((panel.high - panel.low) * speed);
+  for (std::size_t at = i * channels; at < (i + 1) * channels; ++at) slope[at] = by_length * value[at];
+}
+
 Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
                        const LightErrors* errors, int derivatives, std::optional<SpecularSight>* sight) {
   Received sum;

@@ -37,6 +37,9 @@ struct LightErrors {
   // What a receiver gets of what is missed, at most. `weights`: integrals of what it weighs the panel with, which is
   // not negative, times Legendre polynomials, kLightCoefficients of them.
   double Missed(std::size_t index, const double* weights) const;
+  // Sets the panel's slopes to those of errors that are smooth on it, where others would take long: what comes over
+  // mirrors and through glass asks for slopes in its turn.
+  void GuessSlopes(const Chart& chart, const Panel& panel, std::size_t i, std::size_t channels);
 };
 
 // Reflected irradiance and its derivatives along the receiver.

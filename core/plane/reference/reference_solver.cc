@@ -292,25 +292,14 @@ void ReferenceSolver::Work(Worker& worker, std::size_t i) {
 
 void ReferenceSolver::FindSlopes(Worker& worker, std::size_t i) {
   const Panel& panel = world_->radiosity->mesh().panels()[i];
-  const GaussRule& rule = Gauss(kLightCoefficients);
-  LightErrors& errors = world_->radiosity->errors();
-  if (specular_) {
-    // What reaches a panel over mirrors and through glass takes long to differentiate, and asks for slopes of errors in
-    // its turn: those of an error that is smooth on the panel, as Reception has it.
-    const Chart& chart = world_->charts[static_cast<std::size_t>(panel.element)];
-    const double speed = std::min(chart.At(panel.low).speed, chart.At(panel.high).speed);
-    const double by_length = kErrorSlope * 2 / ((panel.high - panel.low) * speed);
-    for (std::size_t at = i * channels_; at < (i + 1) * channels_; ++at)
-      errors.slope[at] = by_length * errors.value[at];
-    return;
-  }
+  const Chart& chart = world_->charts[static_cast<std::size_t>(panel.element)];
+  if (specular_) return world_->radiosity->errors().GuessSlopes(chart, panel, i, channels_);
   for (const std::size_t k : {std::size_t{0}, kLightCoefficients / 2, kLightCoefficients - 1}) {
-    const Receiver receiver = world_->charts[static_cast<std::size_t>(panel.element)].ReceiverAt(
-        panel.element, panel.At(rule.node[k]), panel.side);
-    const Received received =
-        worker.reception.At(receiver, world_->radiosity->mesh(), world_->radiosity->light(), &errors, 1);
+    const Receiver receiver = chart.ReceiverAt(panel.element, panel.At(Gauss(kLightCoefficients).node[k]), panel.side);
+    const Received received = worker.reception.At(receiver, world_->radiosity->mesh(), world_->radiosity->light(),
+                                                  &world_->radiosity->errors(), 1);
     for (std::size_t c = 0; c < channels_; ++c) {
-      double& slope = errors.slope[i * channels_ + c];
+      double& slope = world_->radiosity->errors().slope[i * channels_ + c];
       slope = std::max(slope, received.error[1].value[c] + received.rounding[1].value[c]);
     }
   }
