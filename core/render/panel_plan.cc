@@ -27,7 +27,6 @@ std::string NameOfCurve(const Scene& scene, const Is& is) {
   return {};
 }
 
-bool IsPhong(const Material& material) { return std::holds_alternative<Phong>(material); }
 bool IsConductor(const Material& material) { return std::holds_alternative<Conductor>(material); }
 
 void CheckGlossy(const Scene& scene, const std::string& path, const std::string& glossy, const std::string& other,
@@ -45,6 +44,10 @@ void CheckGlossy(const Scene& scene, const std::string& path, const std::string&
 }
 
 }  // namespace
+
+std::string NameOfPhongCurve(const Scene& scene) {
+  return NameOfCurve(scene, [](const Material& material) { return std::holds_alternative<Phong>(material); });
+}
 
 bool PanelsTellAll(const Scene& scene) {
   const SceneTraits& traits = scene.traits();
@@ -76,7 +79,7 @@ void CheckPanels(const Scene& scene, const std::string& path, const std::string&
                               conductor + "\" has another: use " + other);
     return;
   }
-  const std::string glossy = NameOfCurve(scene, IsPhong);
+  const std::string glossy = NameOfPhongCurve(scene);
   if (!glossy.empty()) return CheckGlossy(scene, path, glossy, other, diagnostics);
   const std::string specular = NameOfCurve(scene, IsSpecular);
   if (!scene.lights().empty()) {

@@ -102,10 +102,12 @@ void RefuseSampling(const Settings& settings, Diagnostics& diagnostics) {
 // Of light that is reflected.
 void CheckReferenceDerivatives(const Scene& scene, Diagnostics& diagnostics) {
   const std::string path = "settings.derivatives", cure = ": leave this out, set max bounces to 0, or use ray-tracing";
-  if (scene.traits().has_beziers) {
+  if (scene.traits().has_beziers)
     diagnostics.Add(path, "reference gives none of light reflected in a scene with Bézier curves" + cure);
-  } else if (!scene.traits().lambertian) {
-    diagnostics.Add(path, "reference gives none of light that mirrors, glass and phong lobes reflect" + cure);
+  const std::string glossy = NameOfPhongCurve(scene);
+  if (!glossy.empty()) {
+    diagnostics.Add(path, "reference gives none of light that phong lobes reflect, and curve \"" + glossy +
+                              "\" has one" + cure);
   }
 }
 

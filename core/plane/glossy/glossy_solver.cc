@@ -23,7 +23,6 @@
 namespace flatlight {
 namespace {
 
-constexpr int kFirstSteps = 2;
 // Decimal digits of integrals of the equations, and of those that check them.
 constexpr int kDigits = 9;
 constexpr int kCheckDigits = 12;
@@ -285,7 +284,7 @@ void GlossySolver::StartFirstMesh() {
   kinks_ = SortedKinks(elements, found_);
   finder_.reset();
   found_.clear();
-  PanelMesh panels = SplitMeshAt(world_, GradedMesh(world_, meetings_, kFirstSteps), LightEvents(*caster_, charts_));
+  PanelMesh panels = SplitMeshAt(world_, MeshBetween(world_, meetings_), LightEvents(*caster_, charts_));
   std::vector<CellMesh::Borders> borders;
   for (const Panel& panel : panels.panels())
     borders.push_back(FirstBorders(GlossyLobe::Of(world_.curve_of(panel.element).material)));

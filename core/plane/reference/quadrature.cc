@@ -95,6 +95,13 @@ void LegendreWithSlopes(double x, std::size_t count, double* p, double* slope) {
   for (std::size_t k = 1; k + 1 < count; ++k) slope[k + 1] = slope[k - 1] + static_cast<double>(2 * k + 1) * p[k];
 }
 
+void LegendreWithBends(double x, std::size_t count, double* p, double* slope, double* bend) {
+  LegendreWithSlopes(x, count, p, slope);
+  bend[0] = 0;
+  if (count > 1) bend[1] = 0;
+  for (std::size_t k = 1; k + 1 < count; ++k) bend[k + 1] = bend[k - 1] + static_cast<double>(2 * k + 1) * slope[k];
+}
+
 std::vector<double> PointsBetween(const GaussRule& rule) {
   const std::size_t n = rule.node.size();
   std::vector<double> points;

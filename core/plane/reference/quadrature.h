@@ -21,6 +21,8 @@ const GaussRule& Gauss(std::size_t points);
 void Legendre(double x, std::size_t count, double* p);
 // The derivatives as well.
 void LegendreWithSlopes(double x, std::size_t count, double* p, double* slope);
+// And the second derivatives.
+void LegendreWithBends(double x, std::size_t count, double* p, double* slope, double* bend);
 
 // The first kTabulated polynomials at each of the nodes of the rule, node after node; 0 from the `points`-th on. Made
 // once.

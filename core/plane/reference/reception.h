@@ -18,6 +18,10 @@
 
 namespace flatlight {
 
+// Slope, by a panel's place in [-1, 1], of what an error of light of size 1 leaves after a reflection: it is smooth
+// then (Markov's inequality for cubics).
+inline constexpr double kErrorSlope = 9;
+
 // What is known of the error of a light.
 struct LightErrors {
   PanelLight residual;        // By how much the light's own reflection differs from it. Irradiance has it in its value.
@@ -33,6 +37,9 @@ struct LightErrors {
   // What a receiver gets of what is missed, at most. `weights`: integrals of what it weighs the panel with, which is
   // not negative, times Legendre polynomials, kLightCoefficients of them.
   double Missed(std::size_t index, const double* weights) const;
+  // Sets the panel's slopes to those of errors that are smooth on it, where others would take long: what comes over
+  // mirrors and through glass asks for slopes in its turn.
+  void GuessSlopes(const Chart& chart, const Panel& panel, std::size_t i, std::size_t channels);
 };
 
 // Reflected irradiance and its derivatives along the receiver.
@@ -65,8 +72,8 @@ class Reception {
     if (specular_) specular_->set_least_share(least_share);
   }
 
-  // What panels reflect and, over mirrors and through glass, what emits. `errors` may be null. `derivatives` 0, 1 or 2;
-  // those of light over mirrors and through glass are left out. `sight`: what is seen so, if it is known already; where
+  // What panels reflect and, over mirrors and through glass, what emits. `errors` may be null. `derivatives` 0, 1 or 2.
+  // `sight`: what is seen so, if it is known already; where
   // it holds nothing it is found, and filled. Null: it is found.
   Received At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
               int derivatives, std::optional<SpecularSight>* sight = nullptr);
@@ -83,6 +90,9 @@ class Reception {
                 int derivatives, const VisiblePiece& piece, Received& sum);
   void AddSpecular(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
                    const SpecularSight& sight, Received& sum);
+  // The same with derivatives.
+  void AddMovingSpecular(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
+                         const LightErrors* errors, int derivatives, const SpecularSight& sight, Received& sum);
   void AddEnd(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
               int derivatives, const VisiblePiece& piece, bool is_end, Received& sum);
 

@@ -292,10 +292,10 @@ void ReferenceSolver::Work(Worker& worker, std::size_t i) {
 
 void ReferenceSolver::FindSlopes(Worker& worker, std::size_t i) {
   const Panel& panel = world_->radiosity->mesh().panels()[i];
-  const GaussRule& rule = Gauss(kLightCoefficients);
+  const Chart& chart = world_->charts[static_cast<std::size_t>(panel.element)];
+  if (specular_) return world_->radiosity->errors().GuessSlopes(chart, panel, i, channels_);
   for (const std::size_t k : {std::size_t{0}, kLightCoefficients / 2, kLightCoefficients - 1}) {
-    const Receiver receiver = world_->charts[static_cast<std::size_t>(panel.element)].ReceiverAt(
-        panel.element, panel.At(rule.node[k]), panel.side);
+    const Receiver receiver = chart.ReceiverAt(panel.element, panel.At(Gauss(kLightCoefficients).node[k]), panel.side);
     const Received received = worker.reception.At(receiver, world_->radiosity->mesh(), world_->radiosity->light(),
                                                   &world_->radiosity->errors(), 1);
     for (std::size_t c = 0; c < channels_; ++c) {

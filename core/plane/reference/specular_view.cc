@@ -98,16 +98,19 @@ Vector2 FrontOf(const Element& segment) {
   return Left(along / Length(along));
 }
 
-// Of the indices of refraction behind a curve and before it.
+// Irradiance of radiance 1 that comes from between two directions.
+double SinesBetween(double from, double to) { return std::max(SinCos(to).sin - SinCos(from).sin, 0.0); }
+
+}  // namespace
+
 double IndexRatio(const Material& material, Side side) {
   const auto* border = std::get_if<Dielectric>(&material);
   return border == nullptr ? 1 : side == Side::kFront ? border->ior : 1 / border->ior;
 }
 
-// Irradiance of radiance 1 that comes from between two directions.
-double SinesBetween(double from, double to) { return std::max(SinCos(to).sin - SinCos(from).sin, 0.0); }
-
-}  // namespace
+bool ComesFromCircle(const Scene& scene, const Receiver& receiver, const SpecularWay& way, ElementId element) {
+  return IsOwnCircle(scene, LastOf(receiver, way), scene.element(element));
+}
 
 std::optional<SpecularRay> FollowWay(const Scene& scene, const SpecularWay& way, double theta) {
   const SinCosValue turn = SinCos(theta);
@@ -130,9 +133,8 @@ std::optional<SpecularRay> FollowWay(const Scene& scene, const SpecularWay& way,
 
 std::optional<double> DistanceBehind(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
                                      const SpecularRay& ray, ElementId element, bool far) {
-  const ElementId last = LastOf(receiver, way);
-  const Element& to = scene.element(element);
-  return Distance(to, ray.from, ray.direction, far, IsOwnCircle(scene, last, to));
+  const bool own_circle = ComesFromCircle(scene, receiver, way, element);
+  return Distance(scene.element(element), ray.from, ray.direction, far, own_circle);
 }
 
 std::size_t BytesOf(const SpecularPiece& piece) {
@@ -143,7 +145,7 @@ std::size_t BytesOf(const SpecularPiece& piece) {
 std::size_t SpecularSight::bytes() const {
   std::size_t bytes = 0;
   for (const SpecularPiece& piece : pieces) bytes += BytesOf(piece);
-  return bytes;
+  return bytes + unfollowed.size() * sizeof(UnfollowedBeam);
 }
 
 bool HasSpecular(const Scene& scene) {
@@ -175,6 +177,7 @@ SpecularView::SpecularView(const RayCaster& caster, const SpecularViewOptions& o
 
 const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
   pieces_.clear();
+  unfollowed_.clear();
   lost_ = 0;
   numbers_ = 0;
   const auto way = std::make_shared<SpecularWay>();
@@ -184,13 +187,15 @@ const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
   const auto directions =
       std::make_shared<const Directions>(Directions{-0.5 * std::numbers::pi, 0.5 * std::numbers::pi, false, nullptr});
   Fan(
-      way, directions, 0, 1, [](double, double) { return true; }, LineFit{});
+      way, directions, {0, 1, nullptr, nullptr}, [](double, double) { return true; }, LineFit{});
   std::size_t grown = 0;
   while (!beams_.empty()) {
     const Beam beam = beams_.top();
     beams_.pop();
     if (beam.weight < options_.least_share || grown >= options_.most_ways) {
       lost_ += beam.weight;
+      unfollowed_.push_back(
+          {beam.directions, beam.begin, beam.end, beam.begins, beam.ends, beam.share * beam.way->tint.Max()});
       continue;
     }
     ++grown;
@@ -201,21 +206,31 @@ const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
 
 template <typename Hopeful>
 void SpecularView::Fan(const std::shared_ptr<const SpecularWay>& way,
-                       const std::shared_ptr<const Directions>& directions, double low, double high,
+                       const std::shared_ptr<const Directions>& directions, const Stretch& stretch,
                        const Hopeful& hopeful, const LineFit& fit) {
   const auto line = [&](double x) -> std::optional<DirectedLine> {
     const std::optional<SpecularRay> ray = FollowWay(scene_, *way, directions->At(x));
     if (!ray) return std::nullopt;
     return DirectedLine{ray->direction, Cross(ray->direction, ray->from - Point2{})};
   };
+  std::shared_ptr<const MovingEnd> between;
+  if (stretch.begins || stretch.ends) {
+    between = std::make_shared<const MovingEnd>(
+        MovingEnd{.way = nullptr,
+                  .mark = {},
+                  .between = MovingEnd::Between{stretch.begin, stretch.end, stretch.begins, stretch.ends}});
+  }
   LineFamily::Fit(
-      low, high, line, hopeful,
+      stretch.begin, stretch.end, line, hopeful,
       [&](const LineFamily& lines) {
+        const double begin = lines.begin + LineFamily::kOverlap, end = lines.end - LineFamily::kOverlap;
         Push({.way = way,
               .directions = directions,
               .lines = lines,
-              .begin = lines.begin + LineFamily::kOverlap,
-              .end = lines.end - LineFamily::kOverlap});
+              .begin = begin,
+              .end = end,
+              .begins = begin <= stretch.begin + LineFamily::kOverlap ? stretch.begins : between,
+              .ends = end >= stretch.end - LineFamily::kOverlap ? stretch.ends : between});
       },
       fit);
 }
@@ -242,14 +257,18 @@ void SpecularView::Grow(const Receiver& receiver, const Beam& beam) {
     if (own && element.kind == Element::Kind::kSegment) continue;
     if (own || !PassBy(beam.lines, element)) cuts.AddEndsOf(element, beam.lines);
   }
-  for (const Point2 crossing : crossings_) cuts.AddRoots(beam.lines, beam.lines.LeftOf(crossing));
+  for (const Point2 crossing : crossings_) cuts.AddPassing(beam.lines, {crossing});
   std::optional<Met> met;
-  double begin = beam.begin, end = beam.begin;
-  const auto finish = [&] {
-    if (met && end > begin) Meet(receiver, beam, *met, begin, end);
+  Cuts::Cut begin{beam.begin, {}}, end = begin;
+  const auto moving = [&](const Cuts::Cut& cut) -> std::shared_ptr<const MovingEnd> {
+    if (!cut.mark) return cut.at == beam.begin ? beam.begins : beam.ends;
+    return std::make_shared<const MovingEnd>(MovingEnd{.way = beam.way, .mark = *cut.mark});
   };
-  cuts.VisitStretches([&](double from, double to) {
-    const std::optional<Met> next = MetBy(receiver, beam, 0.5 * (from + to));
+  const auto finish = [&] {
+    if (met && end.at > begin.at) Meet(receiver, beam, *met, {begin.at, end.at, moving(begin), moving(end)});
+  };
+  cuts.VisitCuts([&](const Cuts::Cut& from, const Cuts::Cut& to) {
+    const std::optional<Met> next = MetBy(receiver, beam, 0.5 * (from.at + to.at));
     if (next != met) {
       finish();
       met = next;
@@ -271,10 +290,13 @@ std::optional<SpecularView::Met> SpecularView::MetBy(const Receiver& receiver, c
   return Met{hit->element, Dot(hit->normal, ray->direction) < 0 ? Side::kFront : Side::kBack, far};
 }
 
-void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& met, double begin, double end) {
+void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& met, const Stretch& stretch) {
+  const double begin = stretch.begin, end = stretch.end;
   const bool direct = beam.way->links.empty();
   const auto add = [&] {
-    if (!direct) pieces_.push_back({beam.way, met.element, met.side, met.far, beam.directions, beam.lines, begin, end});
+    if (direct) return;
+    pieces_.push_back({beam.way, met.element, met.side, met.far, beam.directions, beam.lines, begin, end,
+                       stretch.begins, stretch.ends});
   };
   if (met.element == ElementId::kNone) {
     if (scene_.traits().environment) add();
@@ -284,7 +306,7 @@ void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& m
   const bool specular = IsSpecular(curve.material);
   if (!curve.EmittedRadiance(met.side).IsBlack() || (Reflects(curve) && !specular)) add();
   if (!specular || !Reflects(curve)) return;
-  if (!std::holds_alternative<Dielectric>(curve.material)) return Turn(receiver, beam, met, false, begin, end);
+  if (!std::holds_alternative<Dielectric>(curve.material)) return Turn(receiver, beam, met, false, stretch);
   // Where total reflection begins.
   std::vector<double> cuts(1, begin);
   if (const auto squares = SquaresBehind(receiver, beam, met, begin, end)) {
@@ -301,9 +323,17 @@ void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& m
     }
   }
   cuts.push_back(end);
+  std::shared_ptr<const MovingEnd> begins = stretch.begins;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    Turn(receiver, beam, met, false, cuts[i], cuts[i + 1]);
-    Turn(receiver, beam, met, true, cuts[i], cuts[i + 1]);
+    std::shared_ptr<const MovingEnd> ends = stretch.ends;
+    if (i + 2 < cuts.size()) {
+      ends = std::make_shared<const MovingEnd>(
+          MovingEnd{.way = beam.way, .mark = {}, .border = met.element, .side = met.side, .far = met.far});
+    }
+    const Stretch part{cuts[i], cuts[i + 1], begins, ends};
+    begins = ends;
+    Turn(receiver, beam, met, false, part);
+    Turn(receiver, beam, met, true, part);
   }
 }
 
@@ -335,8 +365,9 @@ std::optional<std::array<double, Bernstein::kCount>> SpecularView::SquaresBehind
   return squares;
 }
 
-void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& met, bool crosses, double begin,
-                        double end) {
+void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& met, bool crosses,
+                        const Stretch& stretch) {
+  const double begin = stretch.begin, end = stretch.end;
   const Element& element = scene_.element(met.element);
   const Curve& curve = scene_.curve(element.curve);
   const double ratio = IndexRatio(curve.material, met.side);
@@ -344,6 +375,8 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
                       beam.way->tint.Max() * (crosses ? std::max(1.0, 1 / ratio) : 1);
   if (most < options_.least_share) {
     lost_ += most;
+    unfollowed_.push_back({beam.directions, begin, end, stretch.begins, stretch.ends,
+                           beam.share * beam.way->tint.Max() * (crosses ? std::max(1.0, 1 / ratio) : 1)});
     return;
   }
   auto way = std::make_shared<SpecularWay>(*beam.way);
@@ -372,7 +405,9 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
           .directions = beam.directions,
           .lines = beam.lines.Reflected(element.a, front),
           .begin = begin,
-          .end = end});
+          .end = end,
+          .begins = stretch.begins,
+          .ends = stretch.ends});
     return;
   }
   // Whether what follows moves as a root there.
@@ -383,7 +418,9 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
   const double beside = kBeside * (end - begin);
   const bool eased = bends(begin + beside) || bends(end - beside);
   const std::shared_ptr<const Directions> directions =
-      eased ? std::make_shared<const Directions>(Directions{begin, end, true, beam.directions}) : beam.directions;
+      eased ? std::make_shared<const Directions>(
+                  Directions{begin, end, true, beam.directions, stretch.begins, stretch.ends})
+            : beam.directions;
   // Whether some ray of the stretch may not be reflected totally.
   bool some_fail = false;
   const auto hopeful = [&](double from, double to) {
@@ -399,7 +436,7 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
   fit.least_part = std::min(options_.least_share / most, 1e-3);
   // Nor better than directions are.
   fit.shift = [&](double x) { return kSameDirection / std::max(directions->Slope(x), kSameDirection); };
-  Fan(shared, directions, eased ? 0 : begin, eased ? 1 : end, hopeful, fit);
+  Fan(shared, directions, eased ? Stretch{0, 1, nullptr, nullptr} : stretch, hopeful, fit);
   // What was given up beside where rays begin to fail.
   if (some_fail) lost_ += 2 * fit.least_part * most;
 }
