@@ -212,9 +212,10 @@ void Reception::AddMovingSpecular(const Receiver& receiver, const PanelMesh& mes
     specular_->VisitPanels(receiver, piece, mesh, [&](std::size_t i, const Cuts::Cut& begin, const Cuts::Cut& end) {
       const SpecularDerivatives::Moments moments = moving.OfPanel(piece, mesh.panels()[i], count, begin, end);
       unfollowed.Add(moments);
-      double share = 0;
+      double share = 0, most_tint = 0;
       for (std::size_t c = 0; c < channels; ++c) {
         const double by = tint.value[c];
+        most_tint = std::max(most_tint, by);
         for (int m = 0; m <= derivatives; ++m) {
           const auto order = static_cast<std::size_t>(m);
           const double part = by * light.At(i, c, moments.value[order].data());
@@ -230,11 +231,12 @@ void Reception::AddMovingSpecular(const Receiver& receiver, const PanelMesh& mes
           const double other = by * errors->value[at] * moments.OfLight(order, kErrorSlope, kErrorBend);
           sum.error[m].value[c] += other;
           if (m > 0) continue;
+          sum.value[0].value[c] += off;
           sum.indirect.value[c] += other;
-          share = std::max(share, std::abs(off) + missed);
+          share = std::max(share, ErrorSum::RestOf(off, missed));
         }
       }
-      if (errors) shares_.emplace_back(i, share);
+      if (errors) shares_.push_back({i, share, most_tint * moments.value[0][0]});
     });
   }
   if (!errors) return;
