@@ -106,8 +106,8 @@ void CheckReferenceDerivatives(const Scene& scene, Diagnostics& diagnostics) {
     diagnostics.Add(path, "reference gives none of light reflected in a scene with Bézier curves" + cure);
   const std::string glossy = NameOfPhongCurve(scene);
   if (!glossy.empty()) {
-    diagnostics.Add(path, "reference gives none of light that phong lobes reflect, and curve \"" + glossy +
-                              "\" has one" + cure);
+    diagnostics.Add(
+        path, "reference gives none of light that phong lobes reflect, and curve \"" + glossy + "\" has one" + cure);
   }
 }
 
