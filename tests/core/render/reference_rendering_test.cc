@@ -317,7 +317,7 @@ TEST(ReferenceRenderingTest, RefusesWhatItCannotDoWithPhongLobes) {
   more.derivatives = Derivatives::kGradient;
   more.max_bounces = 3;
   EXPECT_THAT(Mistakes(*maker.Build(), more),
-              ElementsAre(HasSubstr("settings.derivatives: reference gives none of light that mirrors"),
+              ElementsAre(HasSubstr("settings.derivatives: reference gives none of light that phong lobes reflect"),
                           HasSubstr("settings.maxBounces: is 3, but over mirrors, glass and phong lobes")));
   maker.Segment("mirror", {0, -0.5}, {0.5, -0.5}, {.material = MirrorDescription{{0.9}}});
   maker.Bezier("bend", {{0, 0.2}, {0.1, 0.3}, {0.2, 0.3}, {0.3, 0.2}});
