@@ -20,7 +20,10 @@ namespace {
 // Between two looks at the clock.
 constexpr std::size_t kRecordsPerThread = 4;
 // What panels may be off by, as a share of the tolerance, at so many points of each probe.
-constexpr double kPanelError = 0.05;
+constexpr double kPanelError = 0.02;
+// Of the solver's error, that of irradiance from its panels without what their residuals give, which is in its values:
+// half of that is in its error, too.
+constexpr double kWithoutResiduals = 3;
 // What records of an earlier job may be off by, as a share of the tolerance: that job's may have been larger.
 constexpr double kKnownNoise = 0.5;
 constexpr std::size_t kPointsOfPanels = 32;
@@ -137,7 +140,7 @@ void IrradianceCachingRendering::Advance(Executor& executor, const Cancellation&
       panels_->Advance(executor, threads, cancellation, clock, budget - (clock.Now() - start));
       if (panels_->state() == ReferenceSolver::State::kWorks) return;
       maker_options_.reflected = ReflectedLight{&panels_->mesh(), &panels_->light()};
-      maker_options_.reflected_error = panels_->relative_error();
+      maker_options_.reflected_error = kWithoutResiduals * panels_->relative_error();
       Prepare();
     } else if (photons_ && !photons_->done()) {
       photons_->Advance(executor, threads, cancellation, clock, budget - (clock.Now() - start));
