@@ -33,8 +33,8 @@ grpc::ByteBuffer ToBytes(std::string_view part, const google::protobuf::MessageL
 }
 
 absl::Status FromBytes(const grpc::ByteBuffer& bytes, google::protobuf::MessageLite& message) {
-  // Nearly all are empty or in one piece: without a reader.
-  if (bytes.Length() == 0) {
+  // Nearly all are empty or in one piece: without a reader. Bytes that never came are no empty message.
+  if (bytes.Valid() && bytes.Length() == 0) {
     if (message.ParseFromArray(nullptr, 0)) return absl::OkStatus();
   } else if (grpc::Slice slice; bytes.TrySingleSlice(&slice).ok()) {
     if (message.ParseFromArray(slice.begin(), static_cast<int>(slice.size()))) return absl::OkStatus();

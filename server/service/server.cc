@@ -176,6 +176,8 @@ struct Server::Parts {
              .removed = [this](const JobSpec& job) { NoteExpired(job); }}) {
     metrics.ReadWith([this] { return Read(); });
   }
+  // Jobs may be restored and run before the server fails to start: what they use is still there then.
+  ~Parts() { scheduler.Stop(); }
 
   Readings Read() {
     Readings now;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/store/webhook_secret_table.h"
 
+#include <algorithm>
 #include <string_view>
 
 #include "server/store/error.h"
@@ -60,9 +61,10 @@ absl::Status RotateSecret(Database& database, const std::string& user, WallTime 
                              .Bind(Milliseconds(now))
                              .Run();
   if (!dropped.ok()) return dropped;
+  // By the time, so that none is given twice where a backup has turned the rows back.
   return database.Prepare("INSERT INTO webhook_secrets VALUES(?, ?, NULL)")
       .Bind(std::string_view(user))
-      .Bind(newest + 1)
+      .Bind(std::max(newest + 1, Milliseconds(now)))
       .Run();
 }
 

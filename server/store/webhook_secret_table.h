@@ -17,7 +17,7 @@
 namespace flatlight {
 
 struct SecretTerm {
-  std::int64_t generation = 0;               // Of the user's secrets, from 0 on; never used twice.
+  std::int64_t generation = 0;               // Of the user's secrets, increasing from 0 on; never given twice.
   std::optional<WallTime> expire_time = {};  // Until when messages are signed with it; nothing: it is the newest.
 };
 

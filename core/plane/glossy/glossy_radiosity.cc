@@ -62,6 +62,7 @@ GlossyRadiosity::GlossyRadiosity(const Scene& scene, CellMesh mesh, std::size_t 
       rows_(mesh_.panels().size() * kN),
       means_(mesh_.cells().size()),
       largest_(channels, Values(mesh_.cells().size(), 0.0)),
+      size_(channels, Values(mesh_.cells().size(), 0.0)),
       off_(mesh_.cells().size()),
       spread_(channels, Values(mesh_.cells().size(), 0.0)) {
   std::size_t checked = 0;
@@ -169,7 +170,6 @@ void GlossyRadiosity::Check(ScatterRowBuilder& builder, std::size_t panel) {
     builder.Build(mesh_, panel, points[k], directions, row);
     for (std::size_t c = 0; c < channels_; ++c) {
       const double reflectance = Reflectance(panel, c);
-      if (brightest_[c] == 0) continue;
       LightOn(row, lights_[c], on_rays);
       for (std::size_t i = range.first; i < range.last; ++i) {
         const std::size_t count = mesh_.cells()[i].directions == 1 ? 1 : points.size();
@@ -179,7 +179,10 @@ void GlossyRadiosity::Check(ScatterRowBuilder& builder, std::size_t panel) {
           const double residual = received - lights_[c].At(i, points[k], points[d]), off = std::abs(residual);
           residual_values_[c][first_checked_[i] + k * count + d] = residual;
           largest_[c][i] = std::max(largest_[c][i], off);
-          const double relative = off / brightest_[c];
+          size_[c][i] = std::max(size_[c][i], std::abs(received));
+          if (off == 0) continue;
+          // Light that no Gauss point sees at all may be as much as there is.
+          const double relative = brightest_[c] > 0 ? off / brightest_[c] : 1;
           // Points that are Gauss points of directions show what places lack, and the other way round.
           if (d < kD && k >= kN) off_[i].between_places = std::max(off_[i].between_places, relative);
           if (d >= kD && k < kN) off_[i].between_directions = std::max(off_[i].between_directions, relative);
@@ -249,7 +252,7 @@ void GlossyRadiosity::TransportMost(const Loop& loop, std::size_t channel, const
 bool GlossyRadiosity::Bound(const Loop& loop) {
   if (!majorant_) {
     Values g = spread_[channel_];
-    for (double& w : g) w = kBetween * w + kRounding * brightest_[channel_];
+    for (std::size_t i = 0; i < g.size(); ++i) g[i] = kBetween * g[i] + kRounding * size_[channel_][i];
     majorant_.emplace(std::move(g));
   }
   const bool done = majorant_->Step([&](const Values& in, Values& out) { TransportMost(loop, channel_, in, out); });

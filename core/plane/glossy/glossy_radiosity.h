@@ -60,7 +60,6 @@ class GlossyRadiosity {
   const Values& bound(std::size_t channel) const { return bounds_[channel]; }
   // To the residual, as long as it is known at some points only.
   static constexpr double kBetween = 2;
-  double brightest(std::size_t channel) const { return brightest_[channel]; }
   // How much each cell's largest residual would count, where an error of one on a cell counts `direct` by itself; with
   // all that it adds to the error of others. By cell.
   Values Shares(std::size_t channel, const Values& direct) const;
@@ -102,6 +101,7 @@ class GlossyRadiosity {
   std::vector<std::size_t> first_checked_;  // By cell: the first of these.
   std::vector<GlossyLight> residuals_;      // By channel.
   std::vector<Values> largest_, missed_;    // Of the residual, by channel, then cell.
+  std::vector<Values> size_;                // The most light, as rounding goes.
   std::vector<Off> off_;                    // By cell.
   std::vector<Values> spread_;              // By channel, then cell: the most of |T r|.
   std::vector<Values> bounds_;              // By channel, then cell.

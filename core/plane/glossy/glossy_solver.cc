@@ -27,6 +27,8 @@ namespace {
 constexpr int kDigits = 9;
 constexpr int kCheckDigits = 12;
 constexpr double kRounding = 64 * kUnitRoundoff;
+// The brightest light in sight is known on rays only.
+constexpr double kBrighter = 2;
 constexpr int kMostRounds = 24;
 constexpr std::size_t kMostMemory = std::size_t{1} << 30;
 // A round that brings the error down by less than this is idle.
@@ -227,13 +229,15 @@ void GlossySolver::Gather(Worker& worker, std::size_t point) {
   worker.seen.assign(cells, 0.0);
   worker.known.assign(channels_ * cells, 0.0);
   worker.incoming.From(*points_[point], radiosity_->mesh(), false, std::numbers::pi);
-  Spectrum reflected, error;
+  Spectrum reflected, error, brightest;
   for (const IncomingRay& ray : worker.incoming.rays()) {
     if (ray.cell == IncomingRay::kNoCell) continue;
     const double weight = ray.weight * ray.in.cosine;
     worker.seen[ray.cell] += weight;
     for (std::size_t c = 0; c < channels_; ++c) {
-      reflected.value[c] += weight * radiosity_->light(c).At(ray.cell, ray.x, ray.y);
+      const double light = radiosity_->light(c).At(ray.cell, ray.x, ray.y);
+      reflected.value[c] += weight * light;
+      brightest.value[c] = std::max(brightest.value[c], std::abs(light));
       worker.known[c * cells + ray.cell] += weight * radiosity_->residual(c).At(ray.cell, ray.x, ray.y);
     }
   }
@@ -251,13 +255,13 @@ void GlossySolver::Gather(Worker& worker, std::size_t point) {
       error.value[c] += worker.seen[i] * radiosity_->bound(c)[i];
     }
     error.value[c] += GlossyRadiosity::kBetween * of_residuals.known() + of_residuals.missed();
-    error.value[c] += coordinates * radiosity_->brightest(c) + kRounding * std::abs(reflected.value[c]);
+    error.value[c] += kBrighter * coordinates * brightest.value[c] + kRounding * std::abs(reflected.value[c]);
   }
   ExactValue value = direct_[point];
   for (int c = 0; c < kMaxChannels; ++c) {
     const int from = c < options_.channels ? c : 0;
     value.irradiance[c] = std::max(value.irradiance[c] + reflected[from], 0.0);
-    value.irradiance_error[c] += error[from];
+    value.irradiance_error[c] = std::min(value.irradiance_error[c] + error[from], kUnbounded);
   }
   coming_[point] = value;
   for (std::size_t c = 0; c < channels_; ++c) {

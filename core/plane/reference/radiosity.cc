@@ -77,6 +77,7 @@ std::size_t Radiosity::memory() const {
 }
 
 void Radiosity::DropRows() {
+  dropped_memory_ = memory_of_all();
   rows_ = {};
   positive_ = {};
 }

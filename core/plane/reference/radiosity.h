@@ -54,6 +54,8 @@ class Radiosity {
   const PanelMesh& mesh() const { return mesh_; }
   // In bytes, of the rows built so far; and of the rest, per panel and about.
   std::size_t memory() const;
+  // The same with rows that were dropped, which a finer mesh builds anew.
+  std::size_t memory_of_all() const { return rows_.nodes.empty() ? dropped_memory_ : memory(); }
   static constexpr std::size_t kPanelBytes = 3000;
   // Frees the rows: what follows from the light and its errors stays, finer meshes have rows of their own.
   void DropRows();
@@ -121,6 +123,7 @@ class Radiosity {
   std::optional<std::uint32_t> max_bounces_;
   Values to_coefficients_, to_residual_;  // Matrices.
   double tolerance_;
+  std::size_t dropped_memory_ = 0;
   Rows rows_, rows_before_;
   std::vector<Values> start_;  // By channel: a guess at the light at the nodes.
   std::size_t channel_ = 0;    // That is being solved or bounded.

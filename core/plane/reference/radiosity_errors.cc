@@ -212,6 +212,7 @@ void Radiosity::AddByWayOfOthers(std::vector<double>& importance) const {
 }
 
 std::vector<double> Radiosity::Influence(std::vector<double> importance) const {
+  if (rows_.nodes.empty()) return std::vector<double>(mesh_.size(), 0.0);  // Dropped: shares alone say what to split.
   AddByWayOfOthers(importance);
   std::vector<double> influence(mesh_.size(), 0.0), largest(mesh_.size(), 0.0);
   std::vector<std::uint32_t> seen;

@@ -23,6 +23,13 @@ constexpr double kUneven = 24;
 constexpr double kErrorBend = 24;
 constexpr double kMissedSlope = 8, kMissedBend = 64;
 
+// Where ends move in a way that cannot be told, irradiance is known all the same.
+void TakeStill(const SpecularGather::Moments& still, SpecularDerivatives::Moments& moments) {
+  moments.value[0] = still.value;
+  moments.error[0] = still.error;
+  moments.of_value[0] = std::abs(still.value[0]);
+}
+
 }  // namespace
 
 // By Hölder's inequality: the largest weight times the mean, both roots of mean squares, or the mean weight times the
@@ -200,7 +207,8 @@ void Reception::AddMovingSpecular(const Receiver& receiver, const PanelMesh& mes
     const Spectrum& tint = piece.way->tint;
     const Spectrum emitted = EmittedBy(scene_, piece);
     if (!emitted.IsBlack()) {
-      const SpecularDerivatives::Moments moments = moving.OfPiece(piece);
+      SpecularDerivatives::Moments moments = moving.OfPiece(piece);
+      if (!moments.known) TakeStill(specular_->OfPiece(receiver, piece), moments);
       unfollowed.Add(moments);
       for (int m = 0; m <= derivatives; ++m) {
         const auto order = static_cast<std::size_t>(m);
@@ -210,7 +218,9 @@ void Reception::AddMovingSpecular(const Receiver& receiver, const PanelMesh& mes
     }
     const std::size_t count = errors ? kResidualCoefficients : kLightCoefficients;
     specular_->VisitPanels(receiver, piece, mesh, [&](std::size_t i, const Cuts::Cut& begin, const Cuts::Cut& end) {
-      const SpecularDerivatives::Moments moments = moving.OfPanel(piece, mesh.panels()[i], count, begin, end);
+      SpecularDerivatives::Moments moments = moving.OfPanel(piece, mesh.panels()[i], count, begin, end);
+      if (!moments.known)
+        TakeStill(specular_->OfPanel(receiver, piece, mesh.panels()[i], count, begin.at, end.at), moments);
       unfollowed.Add(moments);
       double share = 0, most_tint = 0;
       for (std::size_t c = 0; c < channels; ++c) {

@@ -47,7 +47,8 @@ void ReferenceSolver::FollowFurther() {
   double of_rows[kMaxChannels], least_factor = 1;
   for (int c = 0; c < options_.channels; ++c)
     of_rows[c] = world_->radiosity->UnfollowedPart(static_cast<std::size_t>(c));
-  const bool rows_may = specular_->least_share > kLeastShare && world_->radiosity->memory() < kMostMemory / kMoreWays;
+  const bool rows_may =
+      specular_->least_share > kLeastShare && world_->radiosity->memory_of_all() < kMostMemory / kMoreWays;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (dark_waits_ && dark_[i] != 0) continue;
     ViewLimit& limit = limits_[i];
@@ -143,7 +144,7 @@ void ReferenceSolver::EndPoints() {
   const double growth = 1 + splits / static_cast<double>(panels());
   const bool goes_further = std::find(goes_further_.begin(), goes_further_.end(), 1) != goes_further_.end();
   if ((splits == 0 && !goes_further) ||
-      growth * growth * static_cast<double>(world_->radiosity->memory()) > kMostMemory) {
+      growth * growth * static_cast<double>(world_->radiosity->memory_of_all()) > kMostMemory) {
     state_ = State::kExhausted;
     return;
   }

@@ -56,6 +56,11 @@ class SpecularGather {
       add(panel, [&] { return Of(receiver, piece, &mesh.panels()[panel], count, begin.at, end.at); });
     });
   }
+  // The same of one of them, between numbers of the piece.
+  Moments OfPanel(const Receiver& receiver, const SpecularPiece& piece, const Panel& panel, std::size_t count,
+                  double begin, double end) const {
+    return Of(receiver, piece, &panel, count, begin, end);
+  }
   // Calls visit(panel, begin, end) for them: the numbers between which a panel is seen; what has no mark there is an
   // end of the piece.
   template <typename Visit>

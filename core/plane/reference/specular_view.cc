@@ -138,14 +138,15 @@ std::optional<double> DistanceBehind(const Scene& scene, const Receiver& receive
 }
 
 std::size_t BytesOf(const SpecularPiece& piece) {
-  return sizeof(SpecularPiece) + sizeof(SpecularWay) + sizeof(Directions) +
+  return sizeof(SpecularPiece) + sizeof(SpecularWay) + sizeof(Directions) + 2 * sizeof(MovingEnd) +
          piece.way->links.size() * sizeof(ChainLink) + piece.way->turnings.size() * sizeof(SpecularWay::Turning);
 }
 
 std::size_t SpecularSight::bytes() const {
   std::size_t bytes = 0;
   for (const SpecularPiece& piece : pieces) bytes += BytesOf(piece);
-  return bytes + unfollowed.size() * sizeof(UnfollowedBeam);
+  return bytes + unfollowed.size() *
+                     (sizeof(UnfollowedBeam) + sizeof(SpecularWay) + sizeof(Directions) + 2 * sizeof(MovingEnd));
 }
 
 bool HasSpecular(const Scene& scene) {

@@ -159,22 +159,29 @@ std::vector<std::int64_t> GenerationsOf(const std::vector<SecretTerm>& terms) {
   return generations;
 }
 
+// A restored backup may have turned back what is known: none is given a second time.
+std::int64_t GenerationAt(WallTime time) {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count();
+}
+
 TEST_F(WebhookOutboxTest, AnEarlierSecretIsUsedUntilItsTimeIsOver) {
   using std::chrono::hours;
+  const std::int64_t first = GenerationAt(kNow), second = GenerationAt(kNow + hours(1));
   EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("ada", kNow)), ElementsAre(0));
-  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow, hours(24))), ElementsAre(1, 0));
-  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow + hours(1), hours(48))), ElementsAre(2, 1, 0));
+  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow, hours(24))), ElementsAre(first, 0));
+  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow + hours(1), hours(48))), ElementsAre(second, first, 0));
   const auto terms = *outbox_.SecretsOf("ada", kNow + hours(2));
   ASSERT_EQ(terms.size(), 3u);
   EXPECT_FALSE(terms[0].expire_time);
   EXPECT_EQ(terms[1].expire_time, kNow + hours(49));
   EXPECT_EQ(terms[2].expire_time, kNow + hours(24)) << "none gets a longer term than it was given";
-  EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("ada", kNow + hours(24))), ElementsAre(2, 1));
-  EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("ada", kNow + hours(49))), ElementsAre(2));
+  EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("ada", kNow + hours(24))), ElementsAre(second, first));
+  EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("ada", kNow + hours(49))), ElementsAre(second));
   EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("bob", kNow)), ElementsAre(0));
   // One that others know: no earlier one is used from then on, nor ever again.
-  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow + hours(3), hours(0))), ElementsAre(3));
-  EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("ada", kNow)), ElementsAre(3));
+  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow + hours(3), hours(0))),
+              ElementsAre(GenerationAt(kNow + hours(3))));
+  EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("ada", kNow)), ElementsAre(GenerationAt(kNow + hours(3))));
 }
 
 TEST_F(WebhookOutboxTest, EarlierSecretsAreFew) {
@@ -188,7 +195,9 @@ TEST_F(WebhookOutboxTest, EarlierSecretsAreFew) {
   EXPECT_EQ(RetryAfterOf(refused.status()), std::chrono::milliseconds(hours(23)));
   EXPECT_EQ(GenerationsOf(*outbox_.SecretsOf("ada", kNow)), before);
   EXPECT_THAT(outbox_.RotateSecretOf("ada", kNow + hours(24), hours(24)), IsOk());
-  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow, hours(0))), ElementsAre(7));
+  // However the clock goes.
+  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow, hours(0))),
+              ElementsAre(GenerationAt(kNow + hours(24)) + 1));
 }
 
 }  // namespace

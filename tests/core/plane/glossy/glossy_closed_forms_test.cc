@@ -130,5 +130,20 @@ TEST(GlossyClosedFormsTest, ARoundRoomIsLitAlikeEverywhere) {
   }
 }
 
+// No light, no error: neither keeps the rest from its target.
+TEST(GlossyClosedFormsTest, DarkPlacesAreDark) {
+  SceneMaker maker;
+  maker.Polyline("room", {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, true, {.reflectance = {0.5}});
+  maker.Segment("lamp", {0.4, 0.9}, {-0.4, 0.9}, {.radiance = {1}});
+  maker.Segment("gloss", {-0.9, -0.6}, {-0.5, -0.6}, PhongOf(0.5, 8)).Probe("gloss", 3);
+  maker.Polyline("box", {{0.3, -0.5}, {0.6, -0.5}, {0.6, -0.2}, {0.3, -0.2}}, true, {.reflectance = {0.7}});
+  maker.Probe("box", 4);
+  const SolvedGloss solved = SolveGloss(maker.Build(), 1e-2);
+  EXPECT_EQ(solved.state, GlossySolver::State::kReached);
+  int dark = 0;
+  for (const ExactValue& value : solved.values) dark += value.irradiance[0] == 0 && value.irradiance_error[0] == 0;
+  EXPECT_EQ(dark, 4);
+}
+
 }  // namespace
 }  // namespace flatlight

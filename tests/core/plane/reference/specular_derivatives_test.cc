@@ -151,5 +151,22 @@ TEST(SpecularDerivativesTest, WallsInARoundMirror) {
   ExpectDerivativesOfNeighbours(maker, {0.4, 0.1}, 4, 3e-4, 1e-2);
 }
 
+// Where a mirror's end and a lamp's end are seen in one direction, nothing tells how what is seen moves. Irradiance is
+// known all the same.
+TEST(SpecularDerivativesTest, IrradianceIsThereWhereDerivativesAreNot) {
+  SceneMaker maker;
+  maker.Segment("receiver", {-1, 1.05}, {-1, 0.95}).Probe("receiver", 1);
+  maker.Segment("mirror", {0, 0}, {2, 0}, MirrorOf(0.9));
+  maker.Segment("lamp", {1, 1}, {1, 2}, {.reflectance = {0.5}, .radiance = {1}});
+  ReferenceOptions options = Options(1e-4);
+  options.derivatives = 0;
+  const SolvedReference still = SolveReference(maker.Build(), options);
+  options.derivatives = 2;
+  const SolvedReference moving = SolveReference(maker.Build(), options);
+  const ExactValue &a = still.values[0], &b = moving.values[0];
+  EXPECT_GT(a.irradiance[0], 0.1);
+  EXPECT_NEAR(a.irradiance[0], b.irradiance[0], a.irradiance_error[0] + b.irradiance_error[0]);
+}
+
 }  // namespace
 }  // namespace flatlight
