@@ -17,12 +17,12 @@ class Cuts {
  public:
   Cuts(double begin, double end) : at_{begin, end} {}
 
+  void Add(double u) {
+    if (u > at_[0] && u < at_[1]) at_.push_back(u);
+  }
   void AddRoots(const LineFamily& lines, const Bernstein& f) {
     const Bernstein::RootList roots = f.Roots();
-    for (std::size_t i = 0; i < roots.count; ++i) {
-      const double u = lines.At(roots.t[i]);
-      if (u > at_[0] && u < at_[1]) at_.push_back(u);
-    }
+    for (std::size_t i = 0; i < roots.count; ++i) Add(lines.At(roots.t[i]));
   }
   // Where rays begin or cease to meet an element.
   void AddEndsOf(const Element& element, const LineFamily& lines) {

@@ -8,6 +8,7 @@
 #include "core/math/check.h"
 #include "core/math/tolerances.h"
 #include "core/plane/reference/error_sum.h"
+#include "core/plane/reference/index_growth.h"
 #include "core/plane/reference/quadrature.h"
 
 namespace flatlight {
@@ -20,6 +21,8 @@ constexpr double kCaution = 2;
 constexpr double kReflectsMuch = 0.8;
 // At a kink coefficients fall by the square of their number; beside the last ones, so much of the mean may be missed.
 constexpr double kMissed = 0.3;
+// Of radiance that may grow without end: its square is a number still.
+constexpr double kNoBound = 1e30;
 // Of a row's sum, in units of roundoff.
 constexpr double kRounding = 16 * kUnitRoundoff;
 
@@ -246,7 +249,8 @@ bool Radiosity::Solve(const Loop& loop) {
   }
   double emitted = scene_.environment().value[c];
   for (const Curve& curve : scene_.curves()) emitted = std::max(emitted, curve.radiance.value[c]);
-  errors_.brightest.value[c] = emitted + reflected;
+  // Mirrors that emit may meet light again and again.
+  errors_.brightest.value[c] = (emitted + reflected) * std::min(GlowGrowth(scene_).value[c], kNoBound);
   keep(accumulation_->values(), light_);
   keep(accumulation_->before(), before_);
   keep(source(), first_);
