@@ -48,7 +48,7 @@ TEST(SpecularViewTest, WaysThatEndInGlassMayBringMoreThanTheirShare) {
   for (const double ior : {1.5, 3.0}) {
     SceneMaker maker;
     maker.Environment({1});
-    maker.Polyline("prism", {{-0.6, 0.5}, {0.6, 0.5}, {0, 1.5}}, true, Glass(ior));
+    maker.Polyline("prism", {{-0.6, 0.5}, {0, 1.5}, {0.6, 0.5}}, true, Glass(ior));
     maker.PointProbe({0, 0}, {0, 1});
     const double extent = 2 * 0.6 / std::hypot(0.6, 0.5);
     for (double least_share = 1; least_share > 1e-3; least_share *= 0.6) {
