@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/math/trig.h"
+
 namespace flatlight {
 
 // f(x) = sum over k < n of c[k] x^k. The k-th derivative at 0 is k! c[k].
@@ -69,6 +71,25 @@ struct Series {
     double sum = 0;
     for (std::size_t i = 0; i <= k; ++i) sum += f[i] * g[k - i];
     return sum;
+  }
+};
+
+// sin f and cos f.
+template <std::size_t n>
+struct SinCosSeries {
+  Series<n> sin, cos;
+
+  explicit SinCosSeries(const Series<n>& f) {
+    const SinCosValue at = SinCos(f[0]);
+    sin[0] = at.sin, cos[0] = at.cos;
+    // sin' = cos f', cos' = -sin f'.
+    for (std::size_t k = 1; k < n; ++k) {
+      for (std::size_t i = 1; i <= k; ++i) {
+        const double slope = static_cast<double>(i) * f[i] / static_cast<double>(k);
+        sin[k] += slope * cos[k - i];
+        cos[k] -= slope * sin[k - i];
+      }
+    }
   }
 };
 

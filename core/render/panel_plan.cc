@@ -27,11 +27,27 @@ std::string NameOfCurve(const Scene& scene, const Is& is) {
   return {};
 }
 
-bool IsGlossy(const Material& material) {
-  return !std::holds_alternative<Lambertian>(material) && !IsSpecular(material);
+bool IsConductor(const Material& material) { return std::holds_alternative<Conductor>(material); }
+
+void CheckGlossy(const Scene& scene, const std::string& path, const std::string& glossy, const std::string& other,
+                 Diagnostics& diagnostics) {
+  const std::string specular = NameOfCurve(scene, IsSpecular);
+  if (!specular.empty()) {
+    diagnostics.Add(path, "reference does phong lobes, of which curve \"" + glossy +
+                              "\" is one, where nothing is a mirror or glass, and curve \"" + specular + "\" is: use " +
+                              other);
+  }
+  if (scene.traits().has_beziers) {
+    diagnostics.Add(path, "reference does scenes with Bézier curves where nothing is a phong lobe, and curve \"" +
+                              glossy + "\" is one: use " + other);
+  }
 }
 
 }  // namespace
+
+std::string NameOfPhongCurve(const Scene& scene) {
+  return NameOfCurve(scene, [](const Material& material) { return std::holds_alternative<Phong>(material); });
+}
 
 bool PanelsTellAll(const Scene& scene) {
   const SceneTraits& traits = scene.traits();
@@ -57,12 +73,14 @@ void CheckPanelDerivatives(const Scene& scene, const std::string& path, const st
 void CheckPanels(const Scene& scene, const std::string& path, const std::string& other, Diagnostics& diagnostics) {
   CheckCount(scene, path, other, diagnostics);
   if (scene.traits().lambertian) return;
-  const std::string glossy = NameOfCurve(scene, IsGlossy);
-  if (!glossy.empty()) {
-    diagnostics.Add(path, "reference does lambertian, mirror and dielectric materials, and curve \"" + glossy +
-                              "\" has another: use " + other);
+  const std::string conductor = NameOfCurve(scene, IsConductor);
+  if (!conductor.empty()) {
+    diagnostics.Add(path, "reference does lambertian, phong, mirror and dielectric materials, and curve \"" +
+                              conductor + "\" has another: use " + other);
     return;
   }
+  const std::string glossy = NameOfPhongCurve(scene);
+  if (!glossy.empty()) return CheckGlossy(scene, path, glossy, other, diagnostics);
   const std::string specular = NameOfCurve(scene, IsSpecular);
   if (!scene.lights().empty()) {
     diagnostics.Add(path, "reference leaves out what plane.lights send over mirrors and glass, and curve \"" +

@@ -102,10 +102,12 @@ void RefuseSampling(const Settings& settings, Diagnostics& diagnostics) {
 // Of light that is reflected.
 void CheckReferenceDerivatives(const Scene& scene, Diagnostics& diagnostics) {
   const std::string path = "settings.derivatives", cure = ": leave this out, set max bounces to 0, or use ray-tracing";
-  if (scene.traits().has_beziers) {
+  if (scene.traits().has_beziers)
     diagnostics.Add(path, "reference gives none of light reflected in a scene with Bézier curves" + cure);
-  } else if (!scene.traits().lambertian) {
-    diagnostics.Add(path, "reference gives none of light that comes over mirrors and glass" + cure);
+  const std::string glossy = NameOfPhongCurve(scene);
+  if (!glossy.empty()) {
+    diagnostics.Add(path, "reference gives none of light that phong lobes reflect, and curve \"" + glossy +
+                              "\" has one" + cure);
   }
 }
 
@@ -118,8 +120,8 @@ void CheckReference(const Scene& scene, const Settings& settings, Diagnostics& d
     if (settings.max_bounces && !scene.traits().lambertian) {
       diagnostics.Add("settings.maxBounces",
                       "is " + Text(*settings.max_bounces) +
-                          ", but over mirrors and through glass reference counts all bounces: leave this out, set it "
-                          "to 0, or use path-tracing");
+                          ", but over mirrors, glass and phong lobes reference counts all bounces: leave this out, set "
+                          "it to 0, or use path-tracing");
     }
   }
   CheckFading(scene, settings, diagnostics);

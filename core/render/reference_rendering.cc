@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/plane/glossy/glossy_solver.h"
+#include "core/plane/reference/reference_solver.h"
 #include "core/render/exact_field.h"
 #include "core/render/probe_points.h"
 #include "core/render/skips.h"
@@ -39,8 +41,12 @@ ReferenceRendering::ReferenceRendering(std::shared_ptr<const Scene> scene,
   options.channels = plan.Takes(skip::kColour) ? 1 : kMaxChannels;
   options.max_bounces = plan.settings.max_bounces;
   options.target_error = target_error_;
+  if (options.max_bounces != 0u && IsGlossy(*scene_)) {
+    solver_ = std::make_unique<GlossySolver>(scene_, caster, options);
+    return;
+  }
   auto world = worlds_->Take(*scene_, static_cast<std::size_t>(options.channels), options.max_bounces, sharers_);
-  solver_.emplace(scene_, caster, options, std::move(world));
+  solver_ = std::make_unique<ReferenceSolver>(scene_, caster, options, std::move(world));
 }
 
 void ReferenceRendering::Advance(Executor& executor, const Cancellation& cancellation, const Clock& clock,
@@ -55,10 +61,10 @@ void ReferenceRendering::Advance(Executor& executor, const Cancellation& cancell
     budget = std::min(budget, left);
   }
   solver_->Advance(executor, threads, cancellation, clock, budget);
-  if (solver_->state() == ReferenceSolver::State::kReached) {
+  if (solver_->state() == BoundedSolver::State::kReached) {
     end_reason_ = EndReason::kTargetReached;
-    worlds_->Keep(solver_->TakeWorld(), sharers_);
-  } else if (solver_->state() == ReferenceSolver::State::kExhausted) {
+    if (auto world = solver_->TakeWorld()) worlds_->Keep(std::move(world), sharers_);
+  } else if (solver_->state() == BoundedSolver::State::kExhausted) {
     end_reason_ = EndReason::kAccuracyLimit;
   } else if (time_limit_ && Seconds(clock.Now() - *start_).count() >= *time_limit_) {
     end_reason_ = EndReason::kTimeLimit;

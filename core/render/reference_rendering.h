@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/plane/ray_caster.h"
-#include "core/plane/reference/reference_solver.h"
+#include "core/plane/reference/bounded_solver.h"
 #include "core/render/rendering.h"
 #include "core/render/solved_worlds.h"
 
@@ -36,7 +36,7 @@ class ReferenceRendering final : public Rendering {
   double target_error_;
   std::optional<double> time_limit_;  // s
   int max_threads_;
-  std::optional<ReferenceSolver> solver_;  // Unless all is dark.
+  std::unique_ptr<BoundedSolver> solver_;  // Null where all is dark.
   std::optional<Clock::Time> start_;
   std::optional<EndReason> end_reason_;
 };

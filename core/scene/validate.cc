@@ -82,6 +82,10 @@ class Validator {
         probes_("probes", scene.probes.size(), diagnostics) {}
 
   void Run() {
+    if (scene_.name.size() > limits_.max_name_bytes) {
+      diagnostics_.Add("name", "has " + std::to_string(scene_.name.size()) + " bytes; at most " +
+                                   std::to_string(limits_.max_name_bytes) + " are allowed");
+    }
     for (std::size_t i = 0; i < scene_.materials.size(); ++i) CheckMaterial(i);
     if (scene_.curves.size() > limits_.max_curves) {
       diagnostics_.Add("plane.curves", "has " + std::to_string(scene_.curves.size()) + " curves; at most " +

@@ -17,6 +17,7 @@ struct SceneLimits {
   double max_coordinate = 1e100;                  // m, of any coordinate and radius.
   double max_radiance = 1e100;                    // W/(rad m); also of power, W, and of irradiance, W/m.
   std::size_t max_lights = 10'000;
+  std::size_t max_name_bytes = 1000;  // Of the scene's name: every job and list that tells of it has it.
 };
 
 // Reports every mistake of a description: ranges, names, shapes.

@@ -7,9 +7,11 @@
 #include <concepts>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "absl/status/statusor.h"
+#include "flatlight/v1/server_service.pb.h"
 #include "flatlight/v1/sharing.pb.h"
 #include "grpcpp/server_context.h"
 #include "grpcpp/support/server_callback.h"
@@ -17,6 +19,7 @@
 #include "server/service/message_bytes.h"
 #include "server/service/scene_source.h"
 #include "server/service/status_convert.h"
+#include "server/service/unary_answer.h"
 #include "server/store/error.h"
 #include "server/store/grants.h"
 
@@ -44,7 +47,7 @@ inline Proceed WhileWanted(const Backend& backend, const grpc::CallbackServerCon
   };
 }
 
-// The job or scene that an answered call is about; empty if there is none, or not yet (an upload under way).
+// The job, scene or whatever else an answered call is about; empty if there is none, or not yet (an upload under way).
 template <class Request, class Response>
 std::string ResourceOf(const Request& request, const absl::StatusOr<Response>& response) {
   if constexpr (requires {
@@ -52,6 +55,8 @@ std::string ResourceOf(const Request& request, const absl::StatusOr<Response>& r
                   response->received_bytes();
                 }) {
     return response.ok() && response->received_bytes() == request.total_bytes() ? response->name() : "";
+  } else if constexpr (std::is_same_v<Request, v1::RotateWebhookSecretRequest>) {
+    return response.ok() ? "webhook-secret" : "";
   } else if constexpr (requires {
                          { request.name() } -> std::convertible_to<std::string>;
                        }) {
@@ -85,40 +90,29 @@ inline grpc::ByteBuffer ToAnswer(const google::protobuf::MessageLite& message) {
 
 // A unary call whose caller is known, with all that its answer takes.
 template <class Request, class Work>
-struct AdmittedCall {
-  Backend& backend;
-  grpc::CallbackServerContext* context;
-  grpc::ServerUnaryReactor* reactor;
-  grpc::ByteBuffer* answer;
+struct KnownCall {
+  UnaryAnswer answer;
+  grpc::ByteBuffer* bytes;  // Of the answer.
   Caller caller;
-  bool logged;  // Whatever the answer.
   Work work;
   CallsUnderWay::Ticket ticket;
 
-  // Whether the bytes are a request; else that is the answer.
-  bool Parse(const grpc::ByteBuffer& bytes, Request& request) const {
-    const absl::Status parsed = FromBytes(bytes, request);
-    if (!parsed.ok()) reactor->Finish(ToGrpcStatus(parsed));
-    return parsed.ok();
-  }
+  void Refuse(const absl::Status& why) const { answer.Refuse(why, {.caller = caller.name}); }
   void Finish(const Request& request) const {
     const auto response = work(caller, request);
-    if (response.ok()) *answer = ToAnswer(*response);
+    std::size_t size = 0;
+    if (response.ok()) {
+      *bytes = ToAnswer(*response);
+      size = bytes->Length();
+    }
     const grpc::Status status = ToGrpcStatus(response.status());
-    if (logged || CallTelemetry::IsDenied(status)) Note(request, response);
-    reactor->Finish(status);
+    answer.Finish(status, answer.MayLog(status) ? NotesOf(request, response) : UnaryAnswer::Notes(), size);
   }
 
  private:
   template <class Response>
-  void Note(const Request& request, const Response& response) const {
-    backend.telemetry.NoteCaller(*context, caller.name);
-    if (const std::string grantee = GranteeOf(request); !grantee.empty()) {
-      backend.telemetry.NoteGrantee(*context, grantee);
-    }
-    if (const std::string name = ResourceOf(request, response); !name.empty()) {
-      backend.telemetry.NoteResource(*context, name);
-    }
+  UnaryAnswer::Notes NotesOf(const Request& request, const Response& response) const {
+    return {.caller = caller.name, .resource = ResourceOf(request, response), .grantee = GranteeOf(request)};
   }
 };
 
@@ -126,30 +120,34 @@ struct AdmittedCall {
 // `lane(caller, request)`, or `lane(request)` where the caller does not matter.
 template <class Request, class LaneOf, class Work>
 grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* context, const grpc::ByteBuffer* bytes,
-                                 grpc::ByteBuffer* answer, LaneOf lane, Work work) {
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  const std::string& request_name = Request::descriptor()->name();
-  static const bool kOnlyLooks = CallTelemetry::OnlyLooks(request_name);
-  absl::StatusOr<Caller> caller = backend.guard.Authorize(*context, request_name);
+                                 grpc::ByteBuffer* answer_bytes, LaneOf lane, Work work) {
+  const UnaryAnswer answer(backend.telemetry, *context, Request::descriptor());
+  grpc::ServerUnaryReactor* const reactor = answer.reactor();
+  absl::StatusOr<Caller> caller = backend.guard.Identify(*context);
   if (!caller.ok()) {
-    reactor->Finish(ToGrpcStatus(caller.status()));
+    answer.Refuse(caller.status(), {});
     return reactor;
   }
-  const bool logged = backend.telemetry.LogsAll(kOnlyLooks);
-  if (logged) backend.telemetry.NoteCaller(*context, caller->name);
-  AdmittedCall<Request, Work> call{
-      backend, context, reactor, answer, *std::move(caller), logged, std::move(work), backend.calls.Enter()};
+  KnownCall<Request, Work> call{answer, answer_bytes, *std::move(caller), std::move(work), backend.calls.Enter()};
+  if (absl::Status admitted = backend.guard.Admit(call.caller, Request::descriptor()->name()); !admitted.ok()) {
+    call.Refuse(admitted);
+    return reactor;
+  }
   const std::size_t size = bytes->Length();
   if (size > kMaxQuickBytes) {
     const absl::Status posted = PostTo(backend.slow, size, [call, bytes] {
       Request request;
-      if (call.Parse(*bytes, request)) call.Finish(request);
+      if (absl::Status parsed = FromBytes(*bytes, request); !parsed.ok()) return call.Refuse(parsed);
+      call.Finish(request);
     });
-    if (!posted.ok()) reactor->Finish(ToGrpcStatus(posted));
+    if (!posted.ok()) call.Refuse(posted);
     return reactor;
   }
   Request request;
-  if (!call.Parse(*bytes, request)) return reactor;
+  if (absl::Status parsed = FromBytes(*bytes, request); !parsed.ok()) {
+    call.Refuse(parsed);
+    return reactor;
+  }
   Lane where;
   if constexpr (std::invocable<LaneOf, const Caller&, const Request&>) {
     where = lane(call.caller, request);
@@ -160,10 +158,10 @@ grpc::ServerUnaryReactor* Answer(Backend& backend, grpc::CallbackServerContext* 
     call.Finish(request);
     return reactor;
   }
-  const absl::Status posted = PostTo(
-      where == Lane::kQuick ? backend.quick : backend.slow, size,
-      [call = std::move(call), request = std::make_shared<Request>(std::move(request))] { call.Finish(*request); });
-  if (!posted.ok()) reactor->Finish(ToGrpcStatus(posted));
+  const absl::Status posted =
+      PostTo(where == Lane::kQuick ? backend.quick : backend.slow, size,
+             [call, request = std::make_shared<Request>(std::move(request))] { call.Finish(*request); });
+  if (!posted.ok()) call.Refuse(posted);
   return reactor;
 }
 

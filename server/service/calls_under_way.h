@@ -13,7 +13,8 @@ namespace flatlight {
 // for idle connections, whose clients may not be listening.) Every call asks: it costs neither a lock nor memory.
 class CallsUnderWay {
  public:
-  // A call is under way as long as a copy of its ticket lives; all tickets end before this.
+  // A call is under way as long as a copy of its ticket lives. All tickets end before this: also those of calls that
+  // AwaitNone did not wait for, whose tasks end with their queues, and those have their answers, which gRPC waits for.
   class Ticket {
    public:
     Ticket(const Ticket& other) : Ticket(other.calls_) {}

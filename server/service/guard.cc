@@ -33,12 +33,9 @@ Guard::Guard(const std::string& token, std::unique_ptr<Database> users, const Qu
       quotas_(quotas),
       requests_(clock) {}
 
-absl::StatusOr<Caller> Guard::Authorize(const grpc::ServerContextBase& context, std::string_view request) const {
-  auto caller = Authenticate(context);
-  if (!caller.ok()) return caller;
-  if (absl::Status allowed = CheckRole(*caller, request); !allowed.ok()) return allowed;
-  if (absl::Status taken = TakeRequest(*caller); !taken.ok()) return taken;
-  return caller;
+absl::Status Guard::Admit(const Caller& caller, std::string_view request) const {
+  if (absl::Status allowed = CheckRole(caller, request); !allowed.ok()) return allowed;
+  return TakeRequest(caller);
 }
 
 absl::Status Guard::TakeRequest(const Caller& caller) const {
@@ -92,7 +89,7 @@ absl::StatusOr<bool> Guard::HasUsers() const {
   return users_->HasUsers();
 }
 
-absl::StatusOr<Caller> Guard::Authenticate(const grpc::ServerContextBase& context) const {
+absl::StatusOr<Caller> Guard::Identify(const grpc::ServerContextBase& context) const {
   const auto has_users = HasUsers();
   if (!has_users.ok()) return has_users.status();
   if (token_hash_.empty() && !*has_users) return Caller{std::string(kAnonymous), Role::kAdmin, {}};

@@ -33,11 +33,13 @@ class Guard {
   // Whether nobody can be kAnonymous, now and from now on.
   absl::StatusOr<bool> KnowsEverybody() const;
 
-  // UNAUTHENTICATED with BAD_TOKEN or TOKEN_INVALID, PERMISSION_DENIED with ROLE_TOO_LOW, RESOURCE_EXHAUSTED with
-  // TOO_MANY_REQUESTS. `request`: see PolicyRow.
-  absl::StatusOr<Caller> Authorize(const grpc::ServerContextBase& context, std::string_view request) const;
+  // UNAUTHENTICATED with BAD_TOKEN or TOKEN_INVALID.
+  absl::StatusOr<Caller> Identify(const grpc::ServerContextBase& context) const;
+  // Takes a request of the caller's. PERMISSION_DENIED with ROLE_TOO_LOW, RESOURCE_EXHAUSTED with TOO_MANY_REQUESTS.
+  // `request`: see PolicyRow.
+  absl::Status Admit(const Caller& caller, std::string_view request) const;
 
-  // Of a call that goes on: whether its caller would still be known. As Authorize; PERMISSION_DENIED for who is not
+  // Of a call that goes on: whether its caller would still be known. As Identify; PERMISSION_DENIED for who is not
   // the same any more.
   absl::Status Recheck(const Caller& caller) const;
   // Changes whenever Recheck may have another answer (and when it has not: with any change of the users' database).
@@ -51,7 +53,6 @@ class Guard {
   double RequestsTaken(const Caller& caller) const;
 
  private:
-  absl::StatusOr<Caller> Authenticate(const grpc::ServerContextBase& context) const;
   absl::StatusOr<bool> HasUsers() const;
   absl::Status TakeRequest(const Caller& caller) const;
 

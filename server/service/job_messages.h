@@ -18,14 +18,17 @@ namespace flatlight {
 // for. Safe to use from any thread.
 class JobMessages {
  public:
-  // Of a message that is remembered. Most take about 1 KiB, but names of scenes may be long.
+  // Of a message that is remembered. Most take about 1 KiB, but a message may have many settings.
   static constexpr std::size_t kMostBytes = 16u << 10;
 
-  // A whole v1::Job, without what only those who may change it are told. A copy of the result shares its bytes.
+  // A whole v1::Job, without what only those who may change it are told. A copy of the result shares its bytes. What
+  // nobody but the caller has of a job, as it was read from the disk, is not remembered: nobody else will ask for it.
   grpc::Slice Of(const JobRecord& job);
+  // Of a job that was deleted.
+  void Forget(const JobId& id);
 
  private:
-  // Of a shard; where there are more, all of the shard are forgotten.
+  // Of a shard. Where there are more, those are forgotten whose states are gone, and if there are none, all.
   static constexpr std::size_t kMostRemembered = 256;
 
   struct Message {
@@ -36,6 +39,8 @@ class JobMessages {
     std::mutex mutex;
     std::unordered_map<JobId, Message> messages ABSL_GUARDED_BY(mutex);
   };
+
+  Shard& ShardOf(const JobId& id) { return shards_[std::hash<JobId>()(id) % shards_.size()]; }
 
   std::array<Shard, 16> shards_;
 };

@@ -33,7 +33,10 @@ grpc::ByteBuffer ToBytes(std::string_view part, const google::protobuf::MessageL
 }
 
 absl::Status FromBytes(const grpc::ByteBuffer& bytes, google::protobuf::MessageLite& message) {
-  if (grpc::Slice slice; bytes.TrySingleSlice(&slice).ok()) {  // As nearly all are: without a reader.
+  // Nearly all are empty or in one piece: without a reader.
+  if (bytes.Length() == 0) {
+    if (message.ParseFromArray(nullptr, 0)) return absl::OkStatus();
+  } else if (grpc::Slice slice; bytes.TrySingleSlice(&slice).ok()) {
     if (message.ParseFromArray(slice.begin(), static_cast<int>(slice.size()))) return absl::OkStatus();
   } else {
     grpc::ByteBuffer copy = bytes;  // Shares the bytes; the reader wants it mutable.

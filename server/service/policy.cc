@@ -50,6 +50,7 @@ const std::vector<PolicyRow>& Policy() {
       {"ValidateSceneRequest", Role::kStudent},
       {"GetCapabilitiesRequest", Role::kStudent},
       {"GetWebhookSecretRequest", Role::kStudent},
+      {"RotateWebhookSecretRequest", Role::kStudent},
       {"GetActivityRequest", Role::kStudent},  // Students see others only as numbers.
   };
   return kPolicy;

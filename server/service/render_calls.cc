@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::size_t kMaxRequestIdBytes = 128;
 // Of a list of jobs, unless one alone is longer. Clients of gRPC take 4 MiB.
-constexpr std::size_t kMaxPageBytes = 2u << 20;
+constexpr std::size_t kMaxPageBytes = 1u << 20;
 
 struct PlannedScene {
   std::shared_ptr<const Scene> scene;
@@ -319,6 +319,7 @@ absl::StatusOr<v1::DeleteJobResponse> DeleteJob(Backend& backend, const Caller& 
   if (!id.ok()) return id.status();
   if (absl::Status allowed = backend.access.CheckRight(caller, JobRight::kOwn, *id); !allowed.ok()) return allowed;
   if (absl::Status deleted = backend.scheduler.Delete(*id); !deleted.ok()) return deleted;
+  backend.job_messages.Forget(*id);
   return v1::DeleteJobResponse();
 }
 

@@ -11,6 +11,7 @@
 #include "server/service/render_calls.h"
 #include "server/service/result_stream.h"
 #include "server/service/scene_lane.h"
+#include "server/service/stream_caller.h"
 
 namespace flatlight {
 namespace {
@@ -108,9 +109,8 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::WatchJob(Context* con
 }
 
 absl::StatusOr<std::shared_ptr<JobWatch>> RenderService::StartWatch(const Context& context, const Bytes& bytes) {
-  const auto caller = backend_.guard.Authorize(context, v1::WatchJobRequest::descriptor()->name());
+  const auto caller = AdmitStream(backend_, context, v1::WatchJobRequest::descriptor()->name());
   if (!caller.ok()) return caller.status();
-  backend_.telemetry.NoteCaller(context, caller->name);
   v1::WatchJobRequest request;
   if (absl::Status parsed = FromBytes(bytes, request); !parsed.ok()) return parsed;
   backend_.telemetry.NoteResource(context, request.name());
@@ -158,9 +158,8 @@ absl::StatusOr<std::shared_ptr<JobWatch>> RenderService::StartWatch(const Contex
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* RenderService::GetResult(Context* context, const Bytes* bytes) {
-  const auto caller = backend_.guard.Authorize(*context, v1::GetResultRequest::descriptor()->name());
+  const auto caller = AdmitStream(backend_, *context, v1::GetResultRequest::descriptor()->name());
   if (!caller.ok()) return new RefusedStream(caller.status());
-  backend_.telemetry.NoteCaller(*context, caller->name);
   v1::GetResultRequest request;
   if (absl::Status parsed = FromBytes(*bytes, request); !parsed.ok()) return new RefusedStream(parsed);
   backend_.telemetry.NoteResource(*context, request.name());

@@ -5,6 +5,7 @@
 
 #include "server/service/call.h"
 #include "server/service/refused_stream.h"
+#include "server/service/stream_caller.h"
 
 namespace flatlight {
 
@@ -59,9 +60,8 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* ReviewService::WatchRoom(Context* co
 }
 
 absl::StatusOr<std::shared_ptr<RoomWatch>> ReviewService::StartWatch(const Context& context, const Bytes& bytes) {
-  const auto caller = backend_.guard.Authorize(context, v1::WatchRoomRequest::descriptor()->name());
+  const auto caller = AdmitStream(backend_, context, v1::WatchRoomRequest::descriptor()->name());
   if (!caller.ok()) return caller.status();
-  backend_.telemetry.NoteCaller(context, caller->name);
   v1::WatchRoomRequest request;
   if (absl::Status parsed = FromBytes(bytes, request); !parsed.ok()) return parsed;
   backend_.telemetry.NoteResource(context, request.name());

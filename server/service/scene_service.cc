@@ -88,11 +88,19 @@ grpc::ServerUnaryReactor* ServerService::GetActivity(grpc::CallbackServerContext
 
 grpc::ServerUnaryReactor* ServerService::GetWebhookSecret(grpc::CallbackServerContext* context,
                                                           const grpc::ByteBuffer* request, grpc::ByteBuffer* response) {
-  return Answer<v1::GetWebhookSecretRequest>(
-      backend_, context, request, response, kInlineLane,
-      [this](const Caller& caller, const v1::GetWebhookSecretRequest&) {
-        return absl::StatusOr<v1::GetWebhookSecretResponse>(flatlight::GetWebhookSecret(backend_, caller));
-      });
+  return Answer<v1::GetWebhookSecretRequest>(backend_, context, request, response, kQuickLane,
+                                             [this](const Caller& caller, const v1::GetWebhookSecretRequest&) {
+                                               return flatlight::GetWebhookSecret(backend_, caller);
+                                             });
+}
+
+grpc::ServerUnaryReactor* ServerService::RotateWebhookSecret(grpc::CallbackServerContext* context,
+                                                             const grpc::ByteBuffer* request,
+                                                             grpc::ByteBuffer* response) {
+  return Answer<v1::RotateWebhookSecretRequest>(backend_, context, request, response, kQuickLane,
+                                                [this](const Caller& caller, const v1::RotateWebhookSecretRequest& r) {
+                                                  return flatlight::RotateWebhookSecret(backend_, caller, r);
+                                                });
 }
 
 }  // namespace flatlight

@@ -37,7 +37,8 @@ class SceneService final : public RawSceneService {
 class ServerService final
     : public v1::ServerService::WithRawCallbackMethod_GetCapabilities<
           v1::ServerService::WithRawCallbackMethod_GetActivity<
-              v1::ServerService::WithRawCallbackMethod_GetWebhookSecret<v1::ServerService::Service>>> {
+              v1::ServerService::WithRawCallbackMethod_GetWebhookSecret<
+                  v1::ServerService::WithRawCallbackMethod_RotateWebhookSecret<v1::ServerService::Service>>>> {
  public:
   explicit ServerService(Backend& backend) : backend_(backend), capabilities_(backend) {}
 
@@ -47,6 +48,8 @@ class ServerService final
                                         grpc::ByteBuffer* response) override;
   grpc::ServerUnaryReactor* GetWebhookSecret(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
                                              grpc::ByteBuffer* response) override;
+  grpc::ServerUnaryReactor* RotateWebhookSecret(grpc::CallbackServerContext* context, const grpc::ByteBuffer* request,
+                                                grpc::ByteBuffer* response) override;
 
  private:
   Backend& backend_;

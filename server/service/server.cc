@@ -19,6 +19,7 @@
 #include "server/scheduler/task_queue.h"
 #include "server/service/backend.h"
 #include "server/service/build_version.h"
+#include "server/service/call_interceptor.h"
 #include "server/service/call_telemetry.h"
 #include "server/service/connection_limits.h"
 #include "server/service/job_format.h"
@@ -134,8 +135,6 @@ struct Server::Parts {
             jobs),
         scheduler(MakeSchedulerOptions(options, metrics, ledger), jobs, pool, clock, StartOf(options),
                   [this](const JobId& job) { hub.Changed(job.Name()); }),
-        quick(kQuickThreads, kMaxWaitingQuickBytes),
-        slow(kSlowThreads, kMaxWaitingSlowBytes),
         backend{.version = BuildVersion(),
                 .limits = options.limits,
                 .threads = pool.threads(),
@@ -157,6 +156,8 @@ struct Server::Parts {
                 .webhook_rules = webhook_rules,
                 .webhooks = *webhooks,
                 .webhook_key = webhook_key},
+        quick(kQuickThreads, kMaxWaitingQuickBytes),
+        slow(kSlowThreads, kMaxWaitingSlowBytes),
         render_service(backend, hub),
         scene_service(backend),
         server_service(backend),
@@ -166,7 +167,12 @@ struct Server::Parts {
             jobs,
             {.is_needed =
                  [this](const JobId& job) { return hub.IsWatched(job.Name()) || rooms.IsShown(job).value_or(true); },
-             .remove = [this](const JobId& job) { return scheduler.Delete(job); },
+             .remove =
+                 [this](const JobId& job) {
+                   absl::Status deleted = scheduler.Delete(job);
+                   if (deleted.ok()) backend.job_messages.Forget(job);
+                   return deleted;
+                 },
              .removed = [this](const JobSpec& job) { NoteExpired(job); }}) {
     metrics.ReadWith([this] { return Read(); });
   }
@@ -312,9 +318,10 @@ struct Server::Parts {
   SceneCache built_scenes{kMaxBuiltSceneBytes};
   WatchHub hub;
   Scheduler scheduler;
+  Backend backend;
+  // Ended before it: calls that have their answers may still let go there of what they had of the backend.
   TaskQueue quick;
   TaskQueue slow;
-  Backend backend;
   RenderService render_service;
   SceneService scene_service;
   ServerService server_service;
@@ -403,7 +410,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   SetConnectionLimits(builder, options.limits, options.keepalive, options.connection_memory_bytes);
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
-  interceptors.push_back(parts->telemetry.MakeFactory());
+  interceptors.push_back(std::make_unique<CallInterceptors>(parts->telemetry));
   builder.experimental().SetInterceptorCreators(std::move(interceptors));
   builder.RegisterService(&parts->render_service);
   builder.RegisterService(&parts->scene_service);

@@ -2,11 +2,14 @@
 #include "server/service/webhook_calls.h"
 
 #include <chrono>
+#include <cmath>
 #include <optional>
+#include <vector>
 
 #include "google/protobuf/util/time_util.h"
 #include "nlohmann/json.hpp"
 #include "server/service/job_convert.h"
+#include "server/service/status_convert.h"
 #include "server/store/error.h"
 #include "server/webhook/webhook_signature.h"
 
@@ -16,6 +19,9 @@ namespace {
 constexpr std::size_t kMaxOpen = 10'000;  // That wait for their job, or to be taken.
 constexpr std::size_t kMaxOpenOfOne = 1000;
 constexpr std::chrono::milliseconds kTryAgain{60'000};
+// s, of an earlier secret: longer than a message is tried again; and at most.
+constexpr double kKeepSecrets = 24 * 3600;
+constexpr double kMostKeepSecrets = 30 * 24 * 3600;
 
 std::string Rfc3339(WallTime time) {
   google::protobuf::Timestamp timestamp;
@@ -30,6 +36,23 @@ const char* TypeOf(JobPhase phase) {
 v1::Webhook::State StateOf(const WebhookState& state) {
   if (state.end_time) return state.delivered ? v1::Webhook::DELIVERED : v1::Webhook::GIVEN_UP;
   return state.next_attempt ? v1::Webhook::SENDING : v1::Webhook::WAITING;
+}
+
+absl::StatusOr<v1::GetWebhookSecretResponse> SecretsToProto(const Backend& backend, const Caller& caller,
+                                                            const absl::StatusOr<std::vector<SecretTerm>>& terms) {
+  if (!terms.ok()) return terms.status();
+  v1::GetWebhookSecretResponse response;
+  for (const SecretTerm& term : *terms) {
+    const std::string secret = WebhookSecretText(WebhookSecret(backend.webhook_key, caller.name, term.generation));
+    if (!term.expire_time) {
+      response.set_secret(secret);
+      continue;
+    }
+    v1::EarlierWebhookSecret& earlier = *response.add_earlier();
+    earlier.set_secret(secret);
+    SetTime(*term.expire_time, *earlier.mutable_expire_time());
+  }
+  return response;
 }
 
 }  // namespace
@@ -52,10 +75,20 @@ absl::Status CheckWebhook(Backend& backend, const Caller& caller, const std::str
       std::to_string(*all) + " webhooks have not been delivered; allowed: " + std::to_string(kMaxOpen), kTryAgain);
 }
 
-v1::GetWebhookSecretResponse GetWebhookSecret(const Backend& backend, const Caller& caller) {
-  v1::GetWebhookSecretResponse response;
-  response.set_secret(WebhookSecretText(WebhookSecret(backend.webhook_key, caller.name)));
-  return response;
+absl::StatusOr<v1::GetWebhookSecretResponse> GetWebhookSecret(Backend& backend, const Caller& caller) {
+  return SecretsToProto(backend, caller, backend.webhooks.SecretsOf(caller.name, std::chrono::system_clock::now()));
+}
+
+absl::StatusOr<v1::GetWebhookSecretResponse> RotateWebhookSecret(Backend& backend, const Caller& caller,
+                                                                 const v1::RotateWebhookSecretRequest& request) {
+  const double seconds = request.has_keep_earlier_seconds() ? request.keep_earlier_seconds() : kKeepSecrets;
+  if (!(seconds >= 0 && seconds <= kMostKeepSecrets)) {
+    return MakeFieldError("keep_earlier_seconds",
+                          std::to_string(seconds) + "; allowed: 0 to " + std::to_string(std::lround(kMostKeepSecrets)));
+  }
+  const auto keep = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(seconds));
+  return SecretsToProto(backend, caller,
+                        backend.webhooks.RotateSecretOf(caller.name, std::chrono::system_clock::now(), keep));
 }
 
 std::string WebhookBody(const JobRecord& job, const std::string& build) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "flatlight/v1/render_service.pb.h"
 #include "flatlight/v1/server_service.pb.h"
 #include "server/service/backend.h"
@@ -16,7 +17,10 @@ namespace flatlight {
 // TOO_MANY_WEBHOOKS, TOO_MANY_OWN_WEBHOOKS.
 absl::Status CheckWebhook(Backend& backend, const Caller& caller, const std::string& url);
 // ServerService.GetWebhookSecret.
-v1::GetWebhookSecretResponse GetWebhookSecret(const Backend& backend, const Caller& caller);
+absl::StatusOr<v1::GetWebhookSecretResponse> GetWebhookSecret(Backend& backend, const Caller& caller);
+// ServerService.RotateWebhookSecret.
+absl::StatusOr<v1::GetWebhookSecretResponse> RotateWebhookSecret(Backend& backend, const Caller& caller,
+                                                                 const v1::RotateWebhookSecretRequest& request);
 
 // What is sent at the end of a job: JSON, and nothing that opens anything.
 std::string WebhookBody(const JobRecord& job, const std::string& build);

@@ -203,6 +203,16 @@ CREATE TRIGGER members_changed AFTER UPDATE ON memberships BEGIN UPDATE users_ve
 CREATE TRIGGER members_removed AFTER DELETE ON memberships BEGIN UPDATE users_version SET version = version + 1; END;
 )sql";
 
+// Of who has rotated its secret. Before that a user's secret has generation 0: see WebhookSecret.
+constexpr char kWebhookSecrets[] = R"sql(
+CREATE TABLE webhook_secrets(
+  user TEXT NOT NULL,
+  generation INTEGER NOT NULL,
+  expire_time INTEGER,  -- ms since 1970; null: it is the user's newest.
+  PRIMARY KEY(user, generation)
+) WITHOUT ROWID;
+)sql";
+
 absl::StatusOr<std::int64_t> VersionOf(Database& database) {
   Statement version = database.Prepare("PRAGMA user_version");
   const auto row = version.Step();
@@ -214,8 +224,8 @@ absl::StatusOr<std::int64_t> VersionOf(Database& database) {
 
 const std::vector<std::string>& Migrations() {
   static const std::vector<std::string> kMigrations = {
-      kJobs,        kScenes, kUsers,       kPauses,   kGrants,    kRooms,    kSceneOwners,
-      kJobsByOwner, kQuotas, kSceneGrants, kWebhooks, kRetention, kDoneWork, kUsersVersion};
+      kJobs,   kScenes,      kUsers,    kPauses,    kGrants,   kRooms,        kSceneOwners,   kJobsByOwner,
+      kQuotas, kSceneGrants, kWebhooks, kRetention, kDoneWork, kUsersVersion, kWebhookSecrets};
   return kMigrations;
 }
 

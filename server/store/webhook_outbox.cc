@@ -120,6 +120,18 @@ absl::Status WebhookOutbox::TryAgain(std::int64_t number, const std::string& err
   });
 }
 
+absl::StatusOr<std::vector<SecretTerm>> WebhookOutbox::SecretsOf(const std::string& user, WallTime now) {
+  const std::lock_guard lock(mutex_);
+  return ReadSecretTerms(*database_, user, now);
+}
+
+absl::StatusOr<std::vector<SecretTerm>> WebhookOutbox::RotateSecretOf(const std::string& user, WallTime now,
+                                                                      std::chrono::milliseconds keep) {
+  absl::Status rotated = Write([&](Database& database) { return RotateSecret(database, user, now, keep); });
+  if (!rotated.ok()) return rotated;
+  return SecretsOf(user, now);
+}
+
 absl::StatusOr<std::string> WebhookOutbox::Key() {
   std::string key;
   absl::Status done = Write([&](Database& database) -> absl::Status {

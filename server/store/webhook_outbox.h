@@ -16,6 +16,7 @@
 #include "absl/status/statusor.h"
 #include "server/store/database.h"
 #include "server/store/job.h"
+#include "server/store/webhook_secret_table.h"
 
 namespace flatlight {
 
@@ -66,6 +67,10 @@ class WebhookOutbox {
   }
   absl::Status TryAgain(std::int64_t number, const std::string& error, WallTime due);
 
+  // As in webhook_secret_table.h.
+  absl::StatusOr<std::vector<SecretTerm>> SecretsOf(const std::string& user, WallTime now);
+  absl::StatusOr<std::vector<SecretTerm>> RotateSecretOf(const std::string& user, WallTime now,
+                                                         std::chrono::milliseconds keep);
   // 32 bytes that nobody else knows, made at the first call and kept as long as the database.
   absl::StatusOr<std::string> Key();
 

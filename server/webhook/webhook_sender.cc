@@ -106,15 +106,24 @@ void WebhookSender::Start(DueWebhook webhook) {
   if (const absl::Status allowed = rules_.Check(webhook.url); !allowed.ok()) {
     return Note(std::move(webhook), {WebhookTransfer::Outcome::kRefused, std::string(allowed.message())});
   }
+  const WallTime now = options_.now();
+  const auto secrets = outbox_.SecretsOf(webhook.owner, now);
+  if (!secrets.ok()) {
+    return Note(std::move(webhook), {WebhookTransfer::Outcome::kFailed, std::string(secrets.status().message())});
+  }
   const std::int64_t number = webhook.number;
   const std::string id = WebhookId(webhook.job.uuid());
-  const auto timestamp = std::chrono::duration_cast<std::chrono::seconds>(options_.now().time_since_epoch()).count();
-  const std::string signature = WebhookSignature(WebhookSecret(key_, webhook.owner), id, timestamp, webhook.body);
+  const auto timestamp = std::chrono::duration_cast<std::chrono::seconds>(now.time_since_epoch()).count();
+  std::string signatures;
+  for (const SecretTerm& term : *secrets) {
+    const std::string secret = WebhookSecret(key_, webhook.owner, term.generation);
+    signatures += (signatures.empty() ? "" : " ") + WebhookSignature(secret, id, timestamp, webhook.body);
+  }
   WebhookTransfer::Message message{
       webhook.url,
       webhook.body,
       {"Content-Type: application/json", "Expect:", "User-Agent: " + user_agent_, "webhook-id: " + id,
-       "webhook-timestamp: " + std::to_string(timestamp), "webhook-signature: " + signature}};
+       "webhook-timestamp: " + std::to_string(timestamp), "webhook-signature: " + signatures}};
   auto transfer = std::make_unique<WebhookTransfer>(rules_, std::move(message), options_.connect_limit, options_.limit);
   curl_multi_add_handle(multi_.get(), transfer->handle());
   flights_[number] = {std::move(webhook), std::move(transfer)};

@@ -23,7 +23,10 @@ std::string Hmac(const std::string& key, const std::string& text) {
 
 std::string WebhookId(const std::string& job_uuid) { return "ended_" + job_uuid; }
 
-std::string WebhookSecret(const std::string& key, const std::string& user) { return Hmac(key, "webhooks of " + user); }
+std::string WebhookSecret(const std::string& key, const std::string& user, std::int64_t generation) {
+  // No user's name has a line's end. The first secrets are from before there were generations.
+  return Hmac(key, "webhooks of " + user + (generation == 0 ? "" : "\n" + std::to_string(generation)));
+}
 
 std::string WebhookSecretText(const std::string& secret) { return "whsec_" + absl::Base64Escape(secret); }
 

@@ -11,11 +11,13 @@ namespace flatlight {
 
 // Of the one event that a job has, its end: the same in every attempt, so that receivers know what they have had.
 std::string WebhookId(const std::string& job_uuid);
-// A user's own secret, 32 bytes, from the server's key: who has it can sign for that user's jobs alone.
-std::string WebhookSecret(const std::string& key, const std::string& user);
+// A user's own secret, 32 bytes, from the server's key: who has it can sign for that user's jobs alone, and knows no
+// other generation. `generation`: SecretTerm.
+std::string WebhookSecret(const std::string& key, const std::string& user, std::int64_t generation);
 // As receivers are given it: "whsec_" and base64.
 std::string WebhookSecretText(const std::string& secret);
-// The header webhook-signature: "v1," and base64 of the HMAC of "id.timestamp.body". `timestamp`: s since 1970.
+// For the header webhook-signature, which has one or more, separated by spaces: "v1," and base64 of the HMAC of
+// "id.timestamp.body". `timestamp`: s since 1970.
 std::string WebhookSignature(const std::string& secret, const std::string& id, std::int64_t timestamp,
                              const std::string& body);
 

@@ -22,6 +22,7 @@ struct Raw {
   std::optional<std::string> picture;
   std::optional<std::string> tolerance;
   std::optional<std::string> prune;
+  std::optional<std::string> keep;
   std::optional<std::string> server;
 };
 
@@ -259,6 +260,13 @@ void AddJobCommands(CLI::App& app, Raw& raw) {
   AddJson(quota, raw, "the same");
   CLI::App& secret = AddCommand(app, "webhook-secret",
                                 "print with what webhooks of your jobs are signed; keep it secret", kSecretHelp);
+  CLI::Option& rotate = *secret.add_flag("--rotate", raw.line.rotate, "make a new one, and print that");
+  secret
+      .add_option(
+          "--keep-earlier", raw.keep,
+          "with --rotate: for so long messages are signed with the earlier one too (default: 24h); 0: not at all")
+      ->type_name("AGE")
+      ->needs(&rotate);
   AddServer(secret, raw);
   CLI::App& health = AddCommand(app, "health", "ask a server whether it serves; needs no token", kHealthHelp);
   AddQuiet(health, raw);
@@ -411,6 +419,11 @@ absl::StatusOr<CommandLine> Finish(const CLI::App& app, Raw& raw) {
     const auto age = ParseAge("--prune", *raw.prune);
     if (!age.ok()) return age.status();
     raw.line.prune_seconds = *age;
+  }
+  if (raw.keep) {
+    const auto age = ParseAge("--keep-earlier", *raw.keep);
+    if (!age.ok()) return age.status();
+    raw.line.keep_seconds = *age;
   }
   if (raw.tolerance) {
     const auto tolerance =

@@ -31,6 +31,8 @@ struct CommandLine {
   bool records = false;                 // Of `watch`: print them as they are made.
   bool once = false;                    // Of `top`.
   std::optional<double> prune_seconds;  // Of `jobs`: delete those that ended longer ago.
+  bool rotate = false;                  // Of `webhook-secret`: make a new one.
+  std::optional<double> keep_seconds;   // With it: for how long the earlier ones are used.
   bool shared = false;                  // Of `jobs` and `scenes`: those of others that are shared with the caller.
   bool mine = false;                    // Of `jobs` and `scenes`: the caller's own alone.
   bool remove = false;                  // Of `scenes`: delete the one that is named.

@@ -64,8 +64,9 @@ inline constexpr char kQuotaHelp[] =
 day rest, and go on by themselves at 00:00 UTC.)";
 
 inline constexpr char kSecretHelp[] =
-    R"(The same secret for all of your jobs, for as long as the server keeps its folder. Receivers check with it the header
-webhook-signature, as the Standard Webhooks specification has it.)";
+    R"(The same secret for all of your jobs, until you rotate it. Receivers check with it the header webhook-signature, as the
+Standard Webhooks specification has it. After --rotate that header has a signature with each secret, so that receivers can
+be given the new one at leisure; standard error says for how long.)";
 
 inline constexpr char kHealthHelp[] =
     R"(For health checks of containers and the like: exit status 0 if the server says that it serves, 3 if it says that it does

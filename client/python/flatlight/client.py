@@ -156,6 +156,12 @@ class Client:
         """With what webhooks of one's own jobs are signed: "whsec_…", as the Standard Webhooks specification has it."""
         return self.call(self.server_service.GetWebhookSecret, server_service_pb2.GetWebhookSecretRequest()).secret
 
+    def rotate_webhook_secret(self, keep_earlier_seconds=None):
+        """Makes a new one, which it returns. Messages are signed with the earlier one too for so many seconds (none
+        given: a day; 0: not at all, as for one that others know)."""
+        request = server_service_pb2.RotateWebhookSecretRequest(keep_earlier_seconds=keep_earlier_seconds)
+        return self.call(self.server_service.RotateWebhookSecret, request).secret
+
     def capabilities(self):
         """What the server is and allows: flatlight.v1.GetCapabilitiesResponse."""
         return self.call(self.server_service.GetCapabilities, server_service_pb2.GetCapabilitiesRequest())

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/plane/chains/line_family.h"
@@ -12,37 +13,62 @@
 
 namespace flatlight {
 
+// What a line passes: a point that lies so far to its left. Touches a circle where that is plus or minus its radius.
+struct LineMark {
+  Point2 point;
+  double offset = 0;
+};
+
 // Numbers that cut a stretch of a family of lines into parts.
 class Cuts {
  public:
-  Cuts(double begin, double end) : at_{begin, end} {}
+  struct Cut {
+    double at = 0;
+    std::optional<LineMark> mark;  // Of what the line there passes, if that is why.
+  };
 
-  void Add(double u) {
-    if (u > at_[0] && u < at_[1]) at_.push_back(u);
-  }
-  void AddRoots(const LineFamily& lines, const Bernstein& f) {
-    const Bernstein::RootList roots = f.Roots();
-    for (std::size_t i = 0; i < roots.count; ++i) Add(lines.At(roots.t[i]));
+  Cuts(double begin, double end) : cuts_{{begin, {}}, {end, {}}} {}
+
+  void Add(double u) { Add({u, {}}); }
+  void AddRoots(const LineFamily& lines, const Bernstein& f) { AddRoots(lines, f, {}); }
+  // Where a line passes a point that lies so far to its left.
+  void AddPassing(const LineFamily& lines, const LineMark& mark) {
+    AddRoots(lines, lines.LeftOf(mark.point, mark.offset), mark);
   }
   // Where rays begin or cease to meet an element.
   void AddEndsOf(const Element& element, const LineFamily& lines) {
-    AddRoots(lines, lines.LeftOf(element.a));
-    AddRoots(lines, lines.LeftOf(element.b));
+    AddPassing(lines, {element.a});
+    AddPassing(lines, {element.b});
     if (element.kind == Element::Kind::kSegment) return;
-    AddRoots(lines, lines.LeftOf(element.center, element.radius));
-    AddRoots(lines, lines.LeftOf(element.center, -element.radius));
+    AddPassing(lines, {element.center, element.radius});
+    AddPassing(lines, {element.center, -element.radius});
   }
+  // Calls visit(Cut, Cut).
+  template <typename Visit>
+  void VisitCuts(Visit visit) {
+    std::sort(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) { return a.at < b.at; });
+    for (std::size_t i = 0; i + 1 < cuts_.size(); ++i)
+      if (cuts_[i + 1].at - cuts_[i].at > kLeastStretch) visit(cuts_[i], cuts_[i + 1]);
+  }
+  // Calls visit(begin, end).
   template <typename Visit>
   void VisitStretches(Visit visit) {
-    std::sort(at_.begin(), at_.end());
-    for (std::size_t i = 0; i + 1 < at_.size(); ++i)
-      if (at_[i + 1] - at_[i] > kLeastStretch) visit(at_[i], at_[i + 1]);
+    VisitCuts([&](const Cut& from, const Cut& to) { visit(from.at, to.at); });
   }
 
  private:
   // Shorter stretches, as fractions of a piece, are nothing.
   static constexpr double kLeastStretch = 1e-13;
-  std::vector<double> at_;
+
+  void AddRoots(const LineFamily& lines, const Bernstein& f, const std::optional<LineMark>& mark) {
+    const Bernstein::RootList roots = f.Roots();
+    for (std::size_t i = 0; i < roots.count; ++i) Add({lines.At(roots.t[i]), mark});
+  }
+  void Add(const Cut& cut) {
+    if (cut.at > cuts_[0].at && cut.at < cuts_[1].at) cuts_.push_back(cut);
+  }
+
+  std::vector<Cut> cuts_;
 };
 
 inline bool OneSign(const Bernstein& f) { return f.Min() > 0 || f.Max() < 0; }

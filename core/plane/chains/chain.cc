@@ -122,6 +122,7 @@ std::optional<ChainRays<n>> FollowChainToLast(const Scene& scene, const Chain& c
 
 template bool TurnAt(const Scene&, const ChainLink&, ChainRays<1>&);
 template bool TurnAt(const Scene&, const ChainLink&, ChainRays<2>&);
+template bool TurnAt(const Scene&, const ChainLink&, ChainRays<3>&);
 template bool TurnAt(const Scene&, const ChainLink&, ChainRays<4>&);
 template std::optional<ChainRays<2>> FollowChain(const Scene&, const Chain&, double, std::vector<SurfacePoint>*);
 template std::optional<ChainRays<4>> FollowChain(const Scene&, const Chain&, double, std::vector<SurfacePoint>*);

@@ -15,7 +15,7 @@ inline constexpr double kUnbounded = 1e200;
 Spectrum LightsAt(const Scene& scene, const Receiver& receiver);
 // Radiance that no light of curves and sky exceeds, emitted or reflected any number of times; irradiance from it is at
 // most twice that. Infinite where a curve reflects all light, or glass emits, so that nothing bounds it. Requires
-// Lambertian curves, mirrors and glass alone.
+// Lambertian curves, mirrors, glass and, if there are no lights without a surface, phong lobes alone.
 Spectrum BrightestLight(const Scene& scene);
 
 }  // namespace flatlight

@@ -28,6 +28,8 @@ class Chart {
   double Roundness(Point2 x, double low, double high) const;
   // In the direction of the element, from a to b: d(tangent)/d(arc length) = curvature * front normal.
   double curvature() const { return curvature_; }
+  // Of arcs: tangent of half the angle from a to b, by which places are numbered.
+  double half_tangent() const { return half_tangent_; }
 
   // The point there as a receiver that looks to one of the sides; its arc length is not set.
   Receiver ReceiverAt(ElementId id, double u, Side side) const;

@@ -11,7 +11,6 @@
 namespace flatlight {
 namespace {
 
-constexpr double kRatio = 0.25;
 // Meetings nearer to each other, in the chart, count as one.
 constexpr double kSame = 1e-9;
 
@@ -27,23 +26,6 @@ bool GoesOn(const Scene& scene, const Element& e, const Element& f) {
   if (before == nullptr || after == nullptr || before->bezier != after->bezier || e.b != f.a) return false;
   if (e.kind != Element::Kind::kArc || f.kind != Element::Kind::kArc) return false;
   return e.Orientation() * f.Orientation() * Dot(e.radial_b, f.radial_a) > 0;
-}
-
-void AddGraded(double from, double to, bool at_from, bool at_to, int steps, std::vector<double>& cuts) {
-  const double middle = 0.5 * (from + to);
-  if (at_from) {
-    double size = middle - from;
-    std::vector<double> near;
-    near.reserve(static_cast<std::size_t>(steps));
-    for (int i = 0; i < steps; ++i) near.push_back(from + (size *= kRatio));
-    cuts.insert(cuts.end(), near.rbegin(), near.rend());
-  }
-  if (at_from && at_to) cuts.push_back(middle);
-  if (at_to) {
-    double size = to - middle;
-    for (int i = 0; i < steps; ++i) cuts.push_back(to - (size *= kRatio));
-  }
-  if (to < 1) cuts.push_back(to);
 }
 
 }  // namespace
@@ -74,20 +56,19 @@ std::vector<std::vector<double>> Meetings(const Scene& scene, const std::vector<
   return meetings;
 }
 
-PanelMesh GradedMesh(const Scene& scene, const std::vector<std::vector<double>>& meetings, int steps) {
+PanelMesh MeshBetween(const Scene& scene, const std::vector<std::vector<double>>& meetings) {
   std::vector<Panel> panels;
   for (std::size_t i = 0; i < meetings.size(); ++i) {
     const auto id = static_cast<ElementId>(i);
     const Curve& curve = scene.curve_of(id);
     if (curve.reflectance.IsBlack() || IsSpecular(curve.material)) continue;
     std::vector<double> cuts(1, 0.0);
-    double from = 0;
-    bool at_from = false;
+    bool meets = false;
     for (const double place : meetings[i]) {
-      if (place > 0) AddGraded(from, place, at_from, true, steps, cuts);
-      from = place, at_from = true;
+      if (place > 0 && meets) cuts.push_back(0.5 * (cuts.back() + place));
+      if (place > 0 && place < 1) cuts.push_back(place);
+      meets = true;
     }
-    if (from < 1) AddGraded(from, 1, at_from, false, steps, cuts);
     cuts.push_back(1);
     for (const Side side : {Side::kFront, Side::kBack})
       for (std::size_t k = 0; k + 1 < cuts.size(); ++k) panels.push_back({id, side, cuts[k], cuts[k + 1]});

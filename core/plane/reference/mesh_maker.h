@@ -12,8 +12,8 @@ namespace flatlight {
 // The places on each element where another one meets it, by element: there light has a singularity.
 std::vector<std::vector<double>> Meetings(const Scene& scene, const std::vector<Chart>& charts);
 
-// Panels on everything that reflects, geometrically smaller toward meetings, `steps` times.
-PanelMesh GradedMesh(const Scene& scene, const std::vector<std::vector<double>>& meetings, int steps);
+// Panels on everything that reflects, with at most one end at a meeting.
+PanelMesh MeshBetween(const Scene& scene, const std::vector<std::vector<double>>& meetings);
 
 // Panels split at places of their elements, in any order.
 PanelMesh SplitMeshAt(const Scene& scene, const PanelMesh& mesh, std::vector<std::vector<double>> places);

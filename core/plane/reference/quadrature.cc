@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/plane/reference/quadrature.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -78,8 +79,8 @@ const double* LegendreAtGauss(std::size_t points) {
   static const auto& tables = *new std::vector<std::vector<double>>([] {
     std::vector<std::vector<double>> made(1);
     for (std::size_t n = 1; n <= kMostGaussPoints; ++n) {
-      std::vector<double> table(n * n);
-      for (std::size_t i = 0; i < n; ++i) Legendre(Gauss(n).node[i], n, &table[i * n]);
+      std::vector<double> table(n * kTabulated, 0.0);
+      for (std::size_t i = 0; i < n; ++i) Legendre(Gauss(n).node[i], std::min(n, kTabulated), &table[i * kTabulated]);
       made.push_back(std::move(table));
     }
     return made;
@@ -92,6 +93,13 @@ void LegendreWithSlopes(double x, std::size_t count, double* p, double* slope) {
   slope[0] = 0;
   if (count > 1) slope[1] = 1;
   for (std::size_t k = 1; k + 1 < count; ++k) slope[k + 1] = slope[k - 1] + static_cast<double>(2 * k + 1) * p[k];
+}
+
+void LegendreWithBends(double x, std::size_t count, double* p, double* slope, double* bend) {
+  LegendreWithSlopes(x, count, p, slope);
+  bend[0] = 0;
+  if (count > 1) bend[1] = 0;
+  for (std::size_t k = 1; k + 1 < count; ++k) bend[k + 1] = bend[k - 1] + static_cast<double>(2 * k + 1) * slope[k];
 }
 
 std::vector<double> PointsBetween(const GaussRule& rule) {
@@ -109,6 +117,14 @@ std::vector<double> PointsBetween(const GaussRule& rule) {
     points.push_back(0.5 * (low + high));
   }
   points.push_back(0.5 * (rule.node.back() + 1));
+  return points;
+}
+
+std::vector<double> NodesAndBetween(const GaussRule& rule) {
+  const std::vector<double> between = PointsBetween(rule);
+  std::vector<double> points;
+  for (std::size_t i = 0; i < rule.node.size(); ++i) points.push_back(between[i]), points.push_back(rule.node[i]);
+  points.push_back(between.back());
   return points;
 }
 

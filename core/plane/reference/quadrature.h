@@ -21,13 +21,19 @@ const GaussRule& Gauss(std::size_t points);
 void Legendre(double x, std::size_t count, double* p);
 // The derivatives as well.
 void LegendreWithSlopes(double x, std::size_t count, double* p, double* slope);
+// And the second derivatives.
+void LegendreWithBends(double x, std::size_t count, double* p, double* slope, double* bend);
 
-// The first `points` polynomials at each of the nodes of the rule, node after node. Made once.
+// The first kTabulated polynomials at each of the nodes of the rule, node after node; 0 from the `points`-th on. Made
+// once.
+inline constexpr std::size_t kTabulated = 18;
 const double* LegendreAtGauss(std::size_t points);
 
 // The points between the nodes of a Gauss rule where its polynomial is largest, and one beyond each outer node: one
 // more than the rule has.
 std::vector<double> PointsBetween(const GaussRule& rule);
+// Both, in increasing order.
+std::vector<double> NodesAndBetween(const GaussRule& rule);
 
 // The matrix, row after row, that makes Legendre coefficients of the values at distinct points.
 std::vector<double> CoefficientsFromValues(const std::vector<double>& points);

@@ -14,25 +14,14 @@
 namespace flatlight {
 namespace {
 
-constexpr std::size_t kNodes = kLightCoefficients;
-// The largest value at nodes need not be that of the panel, nor the residual's polynomial the residual.
-constexpr double kCaution = 2;
-// Above this the largest bounds of all panels would add up to far more than there is.
-constexpr double kReflectsMuch = 0.8;
-// At a kink coefficients fall by the square of their number; beside the last ones, so much of the mean may be missed.
-constexpr double kMissed = 0.3;
+// To which what the residual gives is reflected on, of itself.
+constexpr double kCorrectionTolerance = 1e-3;
 // Of radiance that may grow without end: its square is a number still.
 constexpr double kNoBound = 1e30;
-// Of a row's sum, in units of roundoff.
-constexpr double kRounding = 16 * kUnitRoundoff;
 
-std::vector<double> NodesAndBetween() {
-  const GaussRule& rule = Gauss(kNodes);
-  const std::vector<double> between = PointsBetween(rule);
-  std::vector<double> points;
-  for (std::size_t i = 0; i < kNodes; ++i) points.push_back(between[i]), points.push_back(rule.node[i]);
-  points.push_back(between[kNodes]);
-  return points;
+// Mirrors that emit may meet light again and again.
+double GrowthByGlow(const Scene& scene, std::size_t channel) {
+  return std::min(GlowGrowth(scene).value[channel], kNoBound);
 }
 
 }  // namespace
@@ -48,7 +37,7 @@ Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, 
       channels_(channels),
       max_bounces_(max_bounces),
       to_coefficients_(CoefficientsFromValues(Gauss(kNodes).node)),
-      to_residual_(CoefficientsFromValues(NodesAndBetween())),
+      to_residual_(CoefficientsFromValues(NodesAndBetween(Gauss(kNodes)))),
       tolerance_(tolerance),
       rows_{std::vector<Row>(mesh_.size() * kNodes), std::vector<Row>(mesh_.size() * (kNodes + 1)),
             std::vector<std::vector<Row>>(mesh_.size())},
@@ -59,7 +48,8 @@ Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, 
       first_residual_(mesh_.size(), channels, kResidualCoefficients),
       rounding_(mesh_.size() * channels),
       unfollowed_(mesh_.size() * channels),
-      spread_(mesh_.size() * kNodes * channels) {
+      spread_(mesh_.size() * kNodes * channels),
+      correction_(mesh_.size() * kNodes * channels) {
   FLATLIGHT_DCHECK(mesh_.size() == 0 || (CanFollow(scene_) && max_bounces != 0u));
   for (std::size_t c = 0; before && !max_bounces && c < channels; ++c) start_.push_back(before->OnNodesOf(mesh_, c));
   if (before) rows_before_ = std::move(before->rows_);
@@ -73,7 +63,7 @@ Radiosity::Radiosity(const RayCaster& caster, const std::vector<Chart>& charts, 
   errors_.size.assign(mesh_.size() * channels, 0.0);
   errors_.steep.assign(mesh_.size() * channels, 0.0);
   errors_.missed.assign(mesh_.size() * channels, 0.0);
-  for (auto* values : {&errors_.mean, &errors_.root_mean_square, &errors_.most})
+  for (auto* values : {&errors_.mean, &errors_.in_all, &errors_.root_mean_square, &errors_.most})
     values->assign(mesh_.size() * channels, 0.0);
   errors_.value.assign(mesh_.size() * channels, 0.0);
   errors_.slope.assign(mesh_.size() * channels, 0.0);
@@ -106,7 +96,7 @@ double Radiosity::HalfReflectance(std::size_t panel, std::size_t channel) const 
 void Radiosity::BuildRows(RowBuilder& builder, std::size_t i, std::size_t n) {
   const Panel& panel = mesh_.panels()[i];
   const Chart& chart = charts_[static_cast<std::size_t>(panel.element)];
-  static const auto& points = *new std::vector<double>(NodesAndBetween());
+  static const auto& points = *new std::vector<double>(NodesAndBetween(Gauss(kNodes)));
   const bool known = panel.before != Panel::kNew && !rows_before_.nodes.empty();
   const bool node = n % 2 == 1;
   const std::size_t count = node ? kNodes : kNodes + 1;
@@ -249,8 +239,7 @@ bool Radiosity::Solve(const Loop& loop) {
   }
   double emitted = scene_.environment().value[c];
   for (const Curve& curve : scene_.curves()) emitted = std::max(emitted, curve.radiance.value[c]);
-  // Mirrors that emit may meet light again and again.
-  errors_.brightest.value[c] = (emitted + reflected) * std::min(GlowGrowth(scene_).value[c], kNoBound);
+  errors_.brightest.value[c] = (emitted + reflected) * GrowthByGlow(scene_, c);
   keep(accumulation_->values(), light_);
   keep(accumulation_->before(), before_);
   keep(source(), first_);
@@ -261,180 +250,32 @@ bool Radiosity::Solve(const Loop& loop) {
   return true;
 }
 
-// What is left over at the place where the row was made and the polynomials are p, and rounding there.
-void Radiosity::CheckAt(std::size_t i, const Row& row, const double* p, std::size_t c, double& residual,
-                        double& rounding) const {
-  const double half = HalfReflectance(i, c), direct = row.direct.value[c];
-  double sum = 0, size = direct, brightest = row.brightest.value[c];
-  for (std::size_t e = 0; e < row.panels.size(); ++e) {
-    const double* light = before_.Of(row.panels[e], c);
-    sum += row.Tint(e, c) * row.TimesLight(e, light);
-    size += row.Tint(e, c) * row.low[e * kNodes] * std::abs(light[0]);
-    brightest = std::max(brightest, brightest_[row.panels[e] * channels_ + c]);
+bool Radiosity::Correct(const Loop& loop) {
+  if (max_bounces_ || channel_ == channels_) {
+    channel_ = 0;
+    return true;
   }
-  residual = half * (direct + sum) - light_.At(i, c, p);
-  rounding = half * (kRounding * size + row.coordinates * brightest) + UnfollowedAt(i, row, c);
-}
-
-void Radiosity::Check(std::size_t i) {
-  static const auto& points = *new std::vector<double>(NodesAndBetween());
-  double p[kNodes], residual[kMaxChannels][kResidualCoefficients] = {}, first[kMaxChannels][kResidualCoefficients] = {};
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    const bool node = n % 2 == 1;
-    const Row& row = node ? rows_.nodes[i * kNodes + n / 2] : rows_.between[i * (kNodes + 1) + n / 2];
-    Legendre(points[n], kNodes, p);
-    for (std::size_t c = 0; c < channels_; ++c) {
-      double rounding_here = 0;
-      CheckAt(i, row, p, c, residual[c][n], rounding_here);
-      double& rounding = rounding_[i * channels_ + c];
-      rounding = std::max(rounding, rounding_here);
-      double& unfollowed = unfollowed_[i * channels_ + c];
-      unfollowed = std::max(unfollowed, UnfollowedAt(i, row, c));
-      if (!node) {
-        first[c][n] = HalfReflectance(i, c) * row.direct.value[c] - first_.At(i, c, p);
-      } else if (std::abs(residual[c][n]) <= rounding_here) {
-        // At nodes nothing is left over but rounding and what the solver leaves.
-        residual[c][n] = 0;
-      }
-    }
-  }
-  for (std::size_t c = 0; c < channels_; ++c) {
-    for (std::size_t k = 0; k < kResidualCoefficients; ++k) {
-      double sum = 0, sum_first = 0;
-      for (std::size_t n = 0; n < kResidualCoefficients; ++n) {
-        sum += to_residual_[k * kResidualCoefficients + n] * residual[c][n];
-        sum_first += to_residual_[k * kResidualCoefficients + n] * first[c][n];
-      }
-      errors_.residual.Of(i, c)[k] = kCaution * sum;
-      first_residual_.Of(i, c)[k] = kCaution * sum_first;
-    }
-    double& missed = errors_.missed[i * channels_ + c];
-    for (std::size_t k = kResidualCoefficients - 3; k < kResidualCoefficients; ++k) {
-      const double last = std::max(std::abs(errors_.residual.Of(i, c)[k]), std::abs(first_residual_.Of(i, c)[k]));
-      missed = std::max(missed, kMissed * last);
-    }
-    CheckCells(i, c);
-    double& size = errors_.size[i * channels_ + c];
-    size = errors_.most[i * channels_ + c];
-    double& steep = errors_.steep[i * channels_ + c];
-    for (const double x : points) {
-      double all[kResidualCoefficients], slopes[kResidualCoefficients];
-      LegendreWithSlopes(x, kResidualCoefficients, all, slopes);
-      size = std::max(size, std::abs(errors_.residual.At(i, c, all)));
-      steep = std::max(steep, std::abs(errors_.residual.At(i, c, slopes)));
-    }
-  }
-}
-
-// Beside what the polynomial of the residual says there may be more between two events.
-void Radiosity::CheckCells(std::size_t i, std::size_t c) {
-  const Panel& panel = mesh_.panels()[i];
-  double mean = 0, square = 0, most = 0;
-  for (std::size_t k = 0; k < cells_[i].size(); ++k) {
-    Cell& cell = cells_[i][k];
-    double off = 0, rounding = 0, p[kResidualCoefficients];
-    Legendre(panel.Local(cell.place), kResidualCoefficients, p);
-    CheckAt(i, rows_.cells[i][k], p, c, off, rounding);
-    off = kCaution * (std::abs(off - errors_.residual.At(i, c, p) / kCaution) - rounding);
-    if (!(off > 0)) continue;
-    const double share = (cell.high - cell.low) / (panel.high - panel.low);
-    cell.off = std::max(cell.off, off);
-    most = std::max(most, off);
-    mean += share * off;
-    square += share * off * off;
-  }
-  errors_.mean[i * channels_ + c] = mean;
-  errors_.root_mean_square[i * channels_ + c] = std::sqrt(square);
-  errors_.most[i * channels_ + c] = most;
-}
-
-void Radiosity::Spread(std::size_t i) {
-  if (!positive_.empty())
-    for (std::size_t r = i * kNodes; r < (i + 1) * kNodes; ++r) FindPositive(r);
-  for (std::size_t c = 0; c < channels_; ++c) {
-    for (std::size_t r = i * kNodes; r < (i + 1) * kNodes; ++r) {
-      const Row& row = rows_.nodes[r];
-      ErrorSum all, of_first;
-      for (std::size_t p = 0; p < row.panels.size(); ++p) {
-        const double tint = row.Tint(p, c);
-        const double missed = tint * errors_.Missed(row.panels[p] * channels_ + c, &row.low[p * kNodes]);
-        all.Add(tint * row.Times(p, errors_.residual.Of(row.panels[p], c)), missed);
-        if (max_bounces_) of_first.Add(tint * row.Times(p, first_residual_.Of(row.panels[p], c)), missed);
-      }
-      spread_[r * channels_ + c] = HalfReflectance(i, c) * std::max(all.total(), of_first.total());
-    }
-  }
-}
-
-bool Radiosity::Bound(const Loop& loop) {
-  if (channel_ == channels_) return true;
   const std::size_t c = channel_;
   const auto source = [&] {
     Values values(rows_.nodes.size());
-    for (std::size_t r = 0; r < values.size(); ++r) {
-      const std::size_t at = r / kNodes * channels_ + c;
-      values[r] = spread_[r * channels_ + c] + rounding_[at] + (max_bounces_ ? kRounding * brightest_[at] : 0);
-    }
+    for (std::size_t r = 0; r < values.size(); ++r) values[r] = correction_[r * channels_ + c];
     return values;
   };
-  if (scene_.traits().max_reflectance > kReflectsMuch) {
-    if (max_bounces_) {
-      if (!Accumulate(loop, source, {}, 0)) return false;
-    } else {
-      if (!majorant_) majorant_.emplace(source(), NodeWeights(), scene_.traits().max_reflectance);
-      const bool done = majorant_->Step([&](const Values& in, Values& out) { TransportPositive(loop, c, in, out); });
-      if (!done) return false;
-    }
-    const Values& bounds = max_bounces_ ? accumulation_->values() : majorant_->bounds();
-    for (std::size_t i = 0; i < mesh_.size(); ++i) {
-      double most = 0;
-      for (std::size_t k = 0; k < kNodes; ++k) most = std::max(most, std::abs(bounds[i * kNodes + k]));
-      errors_.value[i * channels_ + c] = most;
-    }
-    accumulation_.reset();
-    majorant_.reset();
-  } else {
-    if (!growth_) {
-      Values half(mesh_.size());
-      for (std::size_t i = 0; i < mesh_.size(); ++i) half[i] = HalfReflectance(i, c);
-      growth_.emplace(rows_.nodes, c, source(), std::move(half), max_bounces_);
-    }
-    if (!growth_->Step(loop)) return false;
-    for (std::size_t i = 0; i < mesh_.size(); ++i) errors_.value[i * channels_ + c] = growth_->bounds()[i];
-    growth_.reset();
+  if (!Accumulate(loop, source, {}, kCorrectionTolerance)) return false;
+  const Values& values = accumulation_->values();
+  Values coefficients, reflected;
+  ToCoefficients(values, coefficients);
+  Transport(loop, c, coefficients, reflected);
+  double most = 0;
+  for (std::size_t r = 0; r < values.size(); ++r) {
+    spread_[r * channels_ + c] += std::abs(correction_[r * channels_ + c] + reflected[r] - values[r]);
+    light_.Of(r / kNodes, c)[r % kNodes] += coefficients[r];
+    most = std::max(most, std::abs(values[r]));
   }
-  return ++channel_ == channels_;
-}
-
-double Radiosity::UnfollowedPart(std::size_t c) const {
-  double unfollowed = 0, all = 0;
-  const Values weights = NodeWeights();
-  for (std::size_t r = 0; r < weights.size(); ++r) {
-    const std::size_t at = r / kNodes * channels_ + c;
-    unfollowed += weights[r] * unfollowed_[at];
-    all += weights[r] * (spread_[r * channels_ + c] + rounding_[at]);
-  }
-  return all > 0 ? unfollowed / all : 0;
-}
-
-std::vector<double> Radiosity::Influence() const {
-  std::vector<double> influence(mesh_.size(), 0.0);
-  const Values weights = NodeWeights();
-  for (std::size_t r = 0; r < rows_.nodes.size(); ++r) {
-    const std::size_t i = r / kNodes;
-    const double weight = weights[r];
-    const Row& row = rows_.nodes[r];
-    for (std::size_t p = 0; p < row.panels.size(); ++p) {
-      double most = 0;
-      for (std::size_t c = 0; c < channels_; ++c) {
-        const double missed = errors_.Missed(row.panels[p] * channels_ + c, &row.low[p * kNodes]);
-        const double off = std::abs(row.Times(p, errors_.residual.Of(row.panels[p], c))) + missed;
-        most = std::max(most, HalfReflectance(i, c) * row.Tint(p, c) * off);
-      }
-      influence[row.panels[p]] += weight * most;
-    }
-  }
-  return influence;
+  errors_.brightest.value[c] += most * GrowthByGlow(scene_, c);
+  accumulation_.reset();
+  ++channel_;
+  return false;
 }
 
 }  // namespace flatlight

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/math/tolerances.h"
 #include "core/plane/ray_caster.h"
 #include "core/plane/reference/accumulation.h"
 #include "core/plane/reference/error_growth.h"
@@ -25,11 +26,12 @@ namespace flatlight {
 //
 // With the residual r = b + T L - L of a computed L the error is e = r + T e. So e = r + e1 with e1 = T r + T e1, and
 // |e1| is at most the solution of w = |T r| + T w, for T keeps what is positive so. T r is small, for r has all but no
-// mean on a panel; so the bound stays sharp where curves reflect nearly all.
+// mean on a panel; so the bound stays sharp where curves reflect nearly all. Of all bounces, what is known of T r with
+// its sign is light: e1 is solved for and added, and only what r's polynomial misses is left to be bounded.
 //
-// Steps, in this order: BuildRows of all panels, Solve, Check of all panels, Spread of all panels, Bound. Steps of
-// panels may run at once on several threads; Solve and Bound are called until they return true, which may stop and go
-// on between calls. Equal bits for any number of threads.
+// Steps, in this order: BuildRows of all panels, Solve, Check of all panels, Spread of all panels, Correct, Bound.
+// Steps of panels may run at once on several threads; Solve, Correct and Bound are called until they return true, which
+// may stop and go on between calls. Equal bits for any number of threads.
 class Radiosity {
  public:
   // Runs work(0) ... work(count - 1).
@@ -62,8 +64,10 @@ class Radiosity {
   bool Solve(const Loop& loop);
   void Check(std::size_t panel);
   void Spread(std::size_t panel);
+  bool Correct(const Loop& loop);
   bool Bound(const Loop& loop);
 
+  // Right at nodes but for T of errors().residual; with that it is right elsewhere, too.
   const PanelLight& light() const { return light_; }
   const LightErrors& errors() const { return errors_; }
   LightErrors& errors() { return errors_; }
@@ -72,11 +76,17 @@ class Radiosity {
   // How much of all that Bound() starts from comes of what ways over mirrors and glass that were not followed further
   // could have brought: a part of 1.
   double UnfollowedPart(std::size_t channel) const;
-  // What the residual of each panel adds to |T r| of others, summed over them.
-  std::vector<double> Influence() const;
+  // What the residual of each panel adds to something by way of other panels' bounds, about, where a bound on any panel
+  // adds so much.
+  std::vector<double> Influence(std::vector<double> importance) const;
 
  private:
   using Values = std::vector<double>;  // By panel, then node.
+  static constexpr std::size_t kNodes = kLightCoefficients;
+  // Above this the largest bounds of all panels would add up to far more than there is.
+  static constexpr double kReflectsMuch = 0.8;
+  // Of a row's sum, in units of roundoff.
+  static constexpr double kRounding = 16 * kUnitRoundoff;
 
   double HalfReflectance(std::size_t panel, std::size_t channel) const;
   void ToCoefficients(const Values& values, Values& coefficients) const;
@@ -88,6 +98,9 @@ class Radiosity {
   void TransportPositive(const Loop& loop, std::size_t channel, const Values& values, Values& out) const;
   // T of a light.
   void Transport(const Loop& loop, std::size_t channel, const Values& coefficients, Values& out) const;
+  double MostReflected(std::size_t panel, const Row& row, std::size_t entry) const;
+  // To what a panel's light matters straight away, what it matters by way of others.
+  void AddByWayOfOthers(std::vector<double>& importance) const;
   // One step of what comes of a source in the channel that is being worked on.
   bool Accumulate(const Loop& loop, const std::function<Values()>& source, const Values& start, double tolerance);
   // The light of a channel at the nodes of another mesh.
@@ -120,7 +133,8 @@ class Radiosity {
   LightErrors errors_;
   Values rounding_;                           // By panel, then channel.
   Values unfollowed_;                         // The same; the part that comes of ways not followed further.
-  Values spread_;                             // By panel, node, channel: bounds on |T r|.
+  Values spread_;                             // By panel, node, channel: bounds on what of |T r| is not light by now,
+  Values correction_;                         // and what is known of T r.
   std::vector<std::vector<float>> positive_;  // By panel, node; where bounds need them.
 };
 

@@ -5,8 +5,11 @@
 #include <cmath>
 
 #include "core/math/tolerances.h"
+#include "core/plane/reference/brightest_light.h"
 #include "core/plane/reference/kernel.h"
 #include "core/plane/reference/row.h"
+#include "core/plane/reference/specular_derivatives.h"
+#include "core/plane/reference/unfollowed_motion.h"
 
 namespace flatlight {
 namespace {
@@ -15,6 +18,10 @@ namespace {
 constexpr double kRounding = 8 * kUnitRoundoff;
 // A largest weight so many times the mean one may be larger yet. (On a point its moments say kLightCoefficients^2.)
 constexpr double kUneven = 24;
+// Slopes and second derivatives, by a panel's place in [-1, 1], of an error of light of size 1: as with kErrorSlope,
+// and of what was missed between the points of a panel.
+constexpr double kErrorBend = 24;
+constexpr double kMissedSlope = 8, kMissedBend = 64;
 
 }  // namespace
 
@@ -30,12 +37,18 @@ double LightErrors::Missed(std::size_t index, const double* weights) const {
       largest += count * share;
       square += count * share * share;
     }
-    const double off =
-        largest > kUneven ? most[index]
-                          : std::min({most[index], std::sqrt(square) * root_mean_square[index], largest * mean[index]});
+    const double off = largest > kUneven ? most[index]
+                                         : std::min({most[index], std::sqrt(square) * root_mean_square[index],
+                                                     in_all[index] + (largest - 1) * mean[index]});
     factor = std::max(factor, off);
   }
   return factor * weights[0];
+}
+
+void LightErrors::GuessSlopes(const Chart& chart, const Panel& panel, std::size_t i, std::size_t channels) {
+  const double speed = std::min(chart.At(panel.low).speed, chart.At(panel.high).speed);
+  const double by_length = kErrorSlope * 2 / ((panel.high - panel.low) * speed);
+  for (std::size_t at = i * channels; at < (i + 1) * channels; ++at) slope[at] = by_length * value[at];
 }
 
 Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
@@ -51,13 +64,17 @@ Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const Pa
     std::optional<SpecularSight> own;
     if (sight == nullptr) sight = &own;
     if (!sight->has_value()) {
-      const std::vector<SpecularPiece>& pieces = specular_->view().From(receiver);
-      *sight = SpecularSight{pieces, specular_->view().lost()};
+      *sight = SpecularSight{specular_->view().From(receiver), specular_->view().lost(), {}};
+      if (derivatives > 0) (*sight)->unfollowed = specular_->view().unfollowed();
     }
-    AddSpecular(receiver, mesh, light, errors, **sight, sum);
+    if (derivatives == 0)
+      AddSpecular(receiver, mesh, light, errors, **sight, sum);
+    else
+      AddMovingSpecular(receiver, mesh, light, errors, derivatives, **sight, sum);
   }
   for (std::size_t c = 0; c < light.channels(); ++c) {
-    for (int m = 0; m <= derivatives; ++m) sum.error[m].value[c] += of_residuals_[m][c].total();
+    sum.error[0].value[c] += of_residuals_[0][c].rest();
+    for (int m = 1; m <= derivatives; ++m) sum.error[m].value[c] += of_residuals_[m][c].total();
     sum.rounding[0].value[c] += end_errors_.joints();
   }
   return sum;
@@ -87,6 +104,7 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
       for (std::size_t c = 0; c < channels; ++c) {
         const double radiance = light.At(i, c, p);
         const double residual = errors ? errors->residual.At(i, c, p) : 0;
+        sum.value[0].value[c] += weight[0] * residual;
         for (int m = 0; m <= derivatives; ++m) {
           sum.value[m].value[c] += weight[m] * radiance;
           sum.rounding[m].value[c] += kRounding * std::abs(weight[m] * radiance);
@@ -111,7 +129,7 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
     const auto rest = [&](double u, double begin, double end) {
       add_weights(u, {std::abs(sine_at(end) - sine_at(begin)), 0, 0});
     };
-    ForEachPoint(chart, receiver.position, radius != 0, count_, from, to, 0, add, rest);
+    ForEachPoint(chart, receiver.position, radius != 0, errors ? high_count_ : count_, from, to, 0, add, rest);
     if (!errors) continue;
     double share = 0;
     for (std::size_t c = 0; c < channels; ++c) {
@@ -123,9 +141,9 @@ void Reception::AddPiece(const Receiver& receiver, const PanelMesh& mesh, const 
         sum.error[m].value[c] += absolute[m] * other;
       }
       sum.indirect.value[c] += absolute[0] * other;
-      share = std::max(share, std::abs(off[0].value[c]) + missed);
+      share = std::max(share, ErrorSum::RestOf(off[0].value[c], missed));
     }
-    shares_.emplace_back(i, share);
+    shares_.push_back({i, share, absolute[0]});
   }
   AddEnd(receiver, mesh, light, errors, derivatives, piece, false, sum);
   AddEnd(receiver, mesh, light, errors, derivatives, piece, true, sum);
@@ -147,25 +165,88 @@ void Reception::AddSpecular(const Receiver& receiver, const PanelMesh& mesh, con
     specular_->OfPanels(receiver, piece, mesh, count, [&](std::size_t i, const auto& moments_of) {
       const SpecularGather::Moments moments = moments_of();
       uncertain += moments.error;
-      double share = 0;
+      double share = 0, most_tint = 0;
       for (std::size_t c = 0; c < channels; ++c) {
+        most_tint = std::max(most_tint, tint.value[c]);
         sum.value[0].value[c] += tint.value[c] * light.At(i, c, moments.value.data());
         if (!errors) continue;
         const double off = tint.value[c] * errors->residual.At(i, c, moments.value.data());
         const double missed = tint.value[c] * errors->Missed(i * channels + c, moments.value.data());
+        sum.value[0].value[c] += off;
         of_residuals_[0][c].Add(off, missed);
         const double other = tint.value[c] * moments.value[0] * errors->value[i * channels + c];
         sum.error[0].value[c] += other;
         sum.indirect.value[c] += other;
-        share = std::max(share, std::abs(off) + missed);
+        share = std::max(share, ErrorSum::RestOf(off, missed));
       }
-      if (errors) shares_.emplace_back(i, share);
+      if (errors) shares_.push_back({i, share, most_tint * moments.value[0]});
     });
   }
   if (!errors) return;
   for (std::size_t c = 0; c < channels; ++c) {
     sum.unfollowed.value[c] = uncertain * errors->brightest.value[c];
     sum.rounding[0].value[c] += sum.unfollowed.value[c] + kRounding * std::abs(sum.value[0].value[c]);
+  }
+}
+
+void Reception::AddMovingSpecular(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
+                                  const LightErrors* errors, int derivatives, const SpecularSight& sight,
+                                  Received& sum) {
+  const std::size_t channels = light.channels();
+  SpecularDerivatives moving(scene_, charts_, receiver, specular_->tolerance(), derivatives);
+  UnfollowedMotion unfollowed(sight.lost, derivatives);
+  for (const UnfollowedBeam& beam : sight.unfollowed) unfollowed.AddUnfollowed(moving.OfUnfollowed(beam));
+  for (const SpecularPiece& piece : sight.pieces) {
+    const Spectrum& tint = piece.way->tint;
+    const Spectrum emitted = EmittedBy(scene_, piece);
+    if (!emitted.IsBlack()) {
+      const SpecularDerivatives::Moments moments = moving.OfPiece(piece);
+      unfollowed.Add(moments);
+      for (int m = 0; m <= derivatives; ++m) {
+        const auto order = static_cast<std::size_t>(m);
+        sum.value[m] = sum.value[m] + moments.value[order][0] * (tint * emitted);
+        sum.rounding[m] = sum.rounding[m] + kRounding * moments.of_value[order] * (tint * emitted);
+      }
+    }
+    const std::size_t count = errors ? kResidualCoefficients : kLightCoefficients;
+    specular_->VisitPanels(receiver, piece, mesh, [&](std::size_t i, const Cuts::Cut& begin, const Cuts::Cut& end) {
+      const SpecularDerivatives::Moments moments = moving.OfPanel(piece, mesh.panels()[i], count, begin, end);
+      unfollowed.Add(moments);
+      double share = 0, most_tint = 0;
+      for (std::size_t c = 0; c < channels; ++c) {
+        const double by = tint.value[c];
+        most_tint = std::max(most_tint, by);
+        for (int m = 0; m <= derivatives; ++m) {
+          const auto order = static_cast<std::size_t>(m);
+          const double part = by * light.At(i, c, moments.value[order].data());
+          sum.value[m].value[c] += part;
+          sum.rounding[m].value[c] += kRounding * std::abs(part);
+          if (!errors) continue;
+          const double off = by * errors->residual.At(i, c, moments.value[order].data());
+          const std::size_t at = i * channels + c;
+          const double own = std::max(errors->missed[at], errors->root_mean_square[at]);
+          const double missed = by * (m == 0 ? errors->Missed(at, moments.value[0].data())
+                                             : 6 * own * moments.OfLight(order, kMissedSlope, kMissedBend));
+          of_residuals_[m][c].Add((m == 0 ? 1 : 2) * off, missed);
+          const double other = by * errors->value[at] * moments.OfLight(order, kErrorSlope, kErrorBend);
+          sum.error[m].value[c] += other;
+          if (m > 0) continue;
+          sum.value[0].value[c] += off;
+          sum.indirect.value[c] += other;
+          share = std::max(share, ErrorSum::RestOf(off, missed));
+        }
+      }
+      if (errors) shares_.push_back({i, share, most_tint * moments.value[0][0]});
+    });
+  }
+  if (!errors) return;
+  for (int m = 0; m <= derivatives; ++m) {
+    const Spectrum uncertain = unfollowed.Of(m) * errors->brightest;
+    if (m == 0) sum.unfollowed = uncertain;
+    for (std::size_t c = 0; c < channels; ++c) {
+      double& rounding = sum.rounding[m].value[c];
+      rounding = std::min(rounding + uncertain.value[c], kUnbounded);
+    }
   }
 }
 

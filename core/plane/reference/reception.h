@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "core/plane/reference/error_sum.h"
@@ -19,13 +18,17 @@
 
 namespace flatlight {
 
+// Slope, by a panel's place in [-1, 1], of what an error of light of size 1 leaves after a reflection: it is smooth
+// then (Markov's inequality for cubics).
+inline constexpr double kErrorSlope = 9;
+
 // What is known of the error of a light.
 struct LightErrors {
-  PanelLight residual;         // By how much the light's own reflection differs from it.
-  std::vector<double> size;    // The largest residual, and
-  std::vector<double> steep;   // the largest slope of it, by the panel's place in [-1, 1].
+  PanelLight residual;        // By how much the light's own reflection differs from it. Irradiance has it in its value.
+  std::vector<double> size;   // The largest residual, and
+  std::vector<double> steep;  // the largest slope of it, by the panel's place in [-1, 1].
   std::vector<double> missed;  // What it may be off by itself, where it is not smooth: the mean, on any panel;
-  std::vector<double> mean, root_mean_square, most;  // and as seen between events.
+  std::vector<double> mean, in_all, root_mean_square, most;  // and as seen between events.
   // Bounds on how far the true light is from that reflection: by panel, then channel.
   std::vector<double> value;
   std::vector<double> slope;  // Of its derivative by arc length.
@@ -34,6 +37,9 @@ struct LightErrors {
   // What a receiver gets of what is missed, at most. `weights`: integrals of what it weighs the panel with, which is
   // not negative, times Legendre polynomials, kLightCoefficients of them.
   double Missed(std::size_t index, const double* weights) const;
+  // Sets the panel's slopes to those of errors that are smooth on it, where others would take long: what comes over
+  // mirrors and through glass asks for slopes in its turn.
+  void GuessSlopes(const Chart& chart, const Panel& panel, std::size_t i, std::size_t channels);
 };
 
 // Reflected irradiance and its derivatives along the receiver.
@@ -55,6 +61,7 @@ class Reception {
       : scene_(caster.scene()),
         charts_(charts),
         count_(kLightCoefficients + 2, kKernelDigits),
+        high_count_(count_, PointCount(kResidualCoefficients - 1, kKernelDigits / 2)),
         outlook_(caster, charts),
         end_errors_(caster.scene()) {
     if (specular) specular_.emplace(caster, charts, *specular);
@@ -65,29 +72,36 @@ class Reception {
     if (specular_) specular_->set_least_share(least_share);
   }
 
-  // What panels reflect and, over mirrors and through glass, what emits. `errors` may be null. `derivatives` 0, 1 or 2;
-  // those of light over mirrors and through glass are left out. `sight`: what is seen so, if it is known already; where
+  // What panels reflect and, over mirrors and through glass, what emits. `errors` may be null. `derivatives` 0, 1 or 2.
+  // `sight`: what is seen so, if it is known already; where
   // it holds nothing it is found, and filled. Null: it is found.
   Received At(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
               int derivatives, std::optional<SpecularSight>* sight = nullptr);
-  // What each panel's residual adds to the error of irradiance in the channel where it is largest, at the receiver of
-  // the last call: panels and values.
-  const std::vector<std::pair<std::size_t, double>>& shares() const { return shares_; }
+  // What each panel's errors add to that of irradiance at the receiver of the last call.
+  struct Share {
+    std::size_t panel = 0;
+    double of_residual = 0;  // In the channel where it is largest.
+    double weight = 0;       // Of LightErrors::value.
+  };
+  const std::vector<Share>& shares() const { return shares_; }
 
  private:
   void AddPiece(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
                 int derivatives, const VisiblePiece& piece, Received& sum);
   void AddSpecular(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
                    const SpecularSight& sight, Received& sum);
+  // The same with derivatives.
+  void AddMovingSpecular(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light,
+                         const LightErrors* errors, int derivatives, const SpecularSight& sight, Received& sum);
   void AddEnd(const Receiver& receiver, const PanelMesh& mesh, const PanelLight& light, const LightErrors* errors,
               int derivatives, const VisiblePiece& piece, bool is_end, Received& sum);
 
   const Scene& scene_;
   const std::vector<Chart>& charts_;
-  PointCount count_;
+  PointCount count_, high_count_;
   Outlook outlook_;
   std::optional<SpecularGather> specular_;
-  std::vector<std::pair<std::size_t, double>> shares_;
+  std::vector<Share> shares_;
   ErrorSum of_residuals_[3][kMaxChannels];  // By derivative.
   EndErrors end_errors_;
 };

@@ -18,26 +18,14 @@ namespace flatlight {
 namespace {
 
 constexpr std::size_t kRowParts = Radiosity::kRowParts;
-constexpr int kFirstSteps = 2;
 // Light of n events, which have either sign, is as hard as that of about the root of n.
 constexpr double kRootAtFirst = 4;
 constexpr double kShortest = 1e-9;  // In the chart.
-constexpr int kMostRounds = 24;
-constexpr std::size_t kMostMemory = std::size_t{1} << 30;
-// A round that brings the error down by less than this is idle.
-constexpr double kIdle = 0.8;
-constexpr int kMostIdleRounds = 3;
-// An error that is larger yet tells nothing: there is no light.
-constexpr double kFarthest = 1e6;
-// Of what errors are relative to, and of the probe's mean.
-constexpr double kFloor = 0.01;
-// Of the mean of the brightest probe: what is less is all but dark.
-constexpr double kDark = 1e-3;
+// Points whose error is at most so much of what is allowed have no say in what to split.
+constexpr double kNear = 0.5;
 constexpr std::size_t kPiecesPerThread = 4;
-// To which equations are solved: of the target error; after a round that brought little; and at least.
-constexpr double kTolerance = 1e-3;
-constexpr double kTighter = 1e-3;
-constexpr double kLeastTolerance = 1e-15;
+// To which equations are solved at first.
+constexpr double kFirstTolerance = 1e-4;
 
 // None: all, and so many that what is reflected more often is nothing beside rounding.
 std::optional<std::uint32_t> MeaningfulBounces(const Scene& world, std::optional<std::uint32_t> bounces) {
@@ -61,16 +49,9 @@ std::unique_ptr<SolvedWorld> NewWorld(std::shared_ptr<const RayCaster> caster, c
   return world;
 }
 
-// How far ways over mirrors and through glass are followed at first; from panels, where arcs of Béziers have many, less.
+// How far ways over mirrors and through glass are followed at first; from panels, where arcs of Béziers have many,
+// less.
 constexpr double kFirstShare = 1e-6, kFirstShareOfBeziers = 1e-3;
-// Of ways that are not followed further, beside the error that is wanted; in one round they are followed no more than
-// so much further; and no further than rounding.
-constexpr double kUnfollowed = 0.3;
-constexpr double kMostFurther = 1e-3;
-constexpr double kMuch = 0.2;  // Of those from a point and from panels together.
-// So many times as many there may be then: between two mirrors the part of the k-th reflection falls as 1/k^2.
-constexpr std::size_t kMoreWays = 32;
-constexpr double kLeastShare = 1e-15;
 constexpr std::size_t kMostSights = std::size_t{1} << 28;  // Bytes.
 
 std::optional<SpecularViewOptions> SpecularOptions(const Scene& world, const ReferenceOptions& options) {
@@ -78,10 +59,6 @@ std::optional<SpecularViewOptions> SpecularOptions(const Scene& world, const Ref
   SpecularViewOptions of_view;
   of_view.least_share = world.traits().has_beziers ? kFirstShareOfBeziers : kFirstShare;
   return of_view;
-}
-
-double Relative(double error, double size) {
-  return error == 0 ? 0 : size > 0 ? error / size : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -97,7 +74,7 @@ struct ReferenceSolver::Worker {
   RowBuilder rows;
   Reception reception;
   ExactSolver exact;
-  std::vector<double> shares;  // Largest of the points it gathered, by panel.
+  std::vector<double> shares, importance;  // Largest of the points it gathered, by panel.
 };
 
 ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
@@ -107,6 +84,7 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
       channels_(static_cast<std::size_t>(options.channels)),
       world_(before ? std::move(before) : NewWorld(std::move(caster), options)),
       tolerance_(std::clamp(kTolerance * options.target_error, kLeastTolerance, kTolerance)),
+      coarse_tolerance_(world_->radiosity ? tolerance_ : std::max(tolerance_, kFirstTolerance)),
       lights_(*world_->caster, {.derivatives = options.derivatives}),
       specular_(SpecularOptions(world_->caster->scene(), options)) {
   for (std::size_t p = 0; p < scene_->probes().size(); ++p) {
@@ -192,8 +170,10 @@ void ReferenceSolver::Return(std::unique_ptr<Worker> worker) {
 }
 
 void ReferenceSolver::StartMesh(PanelMesh mesh) {
-  world_->radiosity = std::make_unique<Radiosity>(*world_->caster, world_->charts, world_->events, std::move(mesh),
-                                                  channels_, options_.max_bounces, tolerance_, world_->radiosity.get());
+  if (new_rows_) idle_.clear();  // For others that follow ways further.
+  world_->radiosity =
+      std::make_unique<Radiosity>(*world_->caster, world_->charts, world_->events, std::move(mesh), channels_,
+                                  options_.max_bounces, coarse_tolerance_, world_->radiosity.get());
   StartRound();
   step_ = Step::kRows;
 }
@@ -204,7 +184,7 @@ void ReferenceSolver::StartRound() {
   split_.assign(panels(), 0);
   places_.assign(panels(), {});
   next_ = 0;
-  for (const auto& worker : idle_) worker->shares.assign(panels(), 0.0);
+  for (const auto& worker : idle_) worker->shares.clear(), worker->importance.clear();
 }
 
 void ReferenceSolver::StartFirstMesh() {
@@ -213,11 +193,11 @@ void ReferenceSolver::StartFirstMesh() {
   world_->kinks = SortedKinks(world.elements().size(), found_);
   finder_.reset();
   found_.clear();
-  const PanelMesh graded = SplitMeshAt(world, GradedMesh(world, world_->meetings, kFirstSteps),
-                                       LightEvents(*world_->caster, world_->charts));
-  std::vector<std::vector<double>> places(graded.size());
-  for (std::size_t i = 0; i < graded.size(); ++i) {
-    const Panel& panel = graded.panels()[i];
+  const PanelMesh between =
+      SplitMeshAt(world, MeshBetween(world, world_->meetings), LightEvents(*world_->caster, world_->charts));
+  std::vector<std::vector<double>> places(between.size());
+  for (std::size_t i = 0; i < between.size(); ++i) {
+    const Panel& panel = between.panels()[i];
     const std::vector<Event>& events = world_->events[PanelMesh::IndexOf(panel.element, panel.side)];
     const auto before = [](const Event& event, double u) { return event.u < u; };
     const auto low = std::lower_bound(events.begin(), events.end(), panel.low, before);
@@ -229,7 +209,7 @@ void ReferenceSolver::StartFirstMesh() {
         places[i].push_back(u);
     }
   }
-  StartMesh(SplitMesh(world, graded, places));
+  StartMesh(SplitMesh(world, between, places));
 }
 
 std::size_t ReferenceSolver::Count() const {
@@ -270,7 +250,9 @@ bool ReferenceSolver::StepWhole(Executor& executor, int threads) {
       for (std::size_t j = i * kTogether; j < std::min((i + 1) * kTogether, count); ++j) work(j);
     });
   };
-  return step_ == Step::kSolve ? world_->radiosity->Solve(loop) : world_->radiosity->Bound(loop);
+  Radiosity& radiosity = *world_->radiosity;
+  if (step_ == Step::kSolve) return radiosity.Solve(loop);
+  return step_ == Step::kCorrect ? radiosity.Correct(loop) : radiosity.Bound(loop);
 }
 
 void ReferenceSolver::Work(Worker& worker, std::size_t i) {
@@ -303,6 +285,7 @@ void ReferenceSolver::Work(Worker& worker, std::size_t i) {
       return;
     }
     case Step::kSolve:
+    case Step::kCorrect:
     case Step::kBound:
       return;
   }
@@ -310,10 +293,10 @@ void ReferenceSolver::Work(Worker& worker, std::size_t i) {
 
 void ReferenceSolver::FindSlopes(Worker& worker, std::size_t i) {
   const Panel& panel = world_->radiosity->mesh().panels()[i];
-  const GaussRule& rule = Gauss(kLightCoefficients);
+  const Chart& chart = world_->charts[static_cast<std::size_t>(panel.element)];
+  if (specular_) return world_->radiosity->errors().GuessSlopes(chart, panel, i, channels_);
   for (const std::size_t k : {std::size_t{0}, kLightCoefficients / 2, kLightCoefficients - 1}) {
-    const Receiver receiver = world_->charts[static_cast<std::size_t>(panel.element)].ReceiverAt(
-        panel.element, panel.At(rule.node[k]), panel.side);
+    const Receiver receiver = chart.ReceiverAt(panel.element, panel.At(Gauss(kLightCoefficients).node[k]), panel.side);
     const Received received = worker.reception.At(receiver, world_->radiosity->mesh(), world_->radiosity->light(),
                                                   &world_->radiosity->errors(), 1);
     for (std::size_t c = 0; c < channels_; ++c) {
@@ -326,6 +309,7 @@ void ReferenceSolver::FindSlopes(Worker& worker, std::size_t i) {
 void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
   const Receiver& receiver = *points_[point];
   worker.shares.resize(panels(), 0.0);
+  worker.importance.resize(panels(), 0.0);
   ExactValue value = direct_[point];
   std::optional<SpecularSight>* const sight = specular_ ? &limits_[point].sight : nullptr;
   const bool was_kept = sight != nullptr && sight->has_value();
@@ -359,9 +343,24 @@ void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
   coming_[point] = value;
   // What comes no nearer to the target has no say in what to split.
   if (idle_rounds_[point] == kMostIdleRounds || (dark_waits_ && dark_[point] != 0)) return;
-  for (const auto& [panel, share] : worker.reception.shares()) {
-    double& most = worker.shares[panel];
-    most = std::max(most, Relative(share, options_.target_error * size));
+  const double allowed = options_.target_error * size;
+  bool is_near = true;
+  for (int c = 0; c < options_.channels; ++c) is_near = is_near && value.irradiance_error[c] <= kNear * allowed;
+  for (const Reception::Share& share : worker.reception.shares()) {
+    double& most = worker.shares[share.panel];
+    most = std::max(most, Relative(share.of_residual, allowed));
+    if (is_near) continue;
+    double& importance = worker.importance[share.panel];
+    importance = std::max(importance, Relative(share.weight, allowed));
+  }
+}
+
+void ReferenceSolver::CollectShares(std::vector<double>& importance) {
+  for (const auto& worker : idle_) {
+    for (std::size_t i = 0; i < worker->shares.size(); ++i) {
+      shares_[i] = std::max(shares_[i], worker->shares[i]);
+      importance[i] = std::max(importance[i], worker->importance[i]);
+    }
   }
 }
 
@@ -376,124 +375,6 @@ void ReferenceSolver::NextStep() {
   if (step_ == Step::kSplit) return StartMesh(SplitMesh(world_->caster->scene(), world_->radiosity->mesh(), places_));
   step_ = static_cast<Step>(static_cast<int>(step_) + 1);
   if (step_ == Step::kSlopes) step_ = FirstOfPoints();
-}
-
-// What the error of a point is relative to.
-double ReferenceSolver::SizeAt(std::size_t i, int c) const {
-  return std::max(values_[i].irradiance[c], kFloor * means_[probe_of_point_[i]][c]);
-}
-
-// Where what ways could have brought that were not followed is much of a bound, these are: from the point on, or from
-// all panels.
-void ReferenceSolver::FollowFurther() {
-  std::fill(goes_further_.begin(), goes_further_.end(), 0);
-  new_rows_ = false;
-  if (!specular_) return;
-  double of_rows[kMaxChannels], least_factor = 1;
-  for (int c = 0; c < options_.channels; ++c)
-    of_rows[c] = world_->radiosity->UnfollowedPart(static_cast<std::size_t>(c));
-  const bool rows_may = specular_->least_share > kLeastShare && world_->radiosity->memory() < kMostMemory / kMoreWays;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (dark_waits_ && dark_[i] != 0) continue;
-    ViewLimit& limit = limits_[i];
-    double factor = 1, factor_of_rows = 1, unfollowed = 0;
-    for (int c = 0; c < options_.channels; ++c) {
-      const double error = values_[i].irradiance_error[c], allowed = options_.target_error * SizeAt(i, c);
-      if (!(error > allowed)) continue;
-      const double from_point = limit.unfollowed[c], from_rows = of_rows[c] * limit.indirect[c];
-      const double both = from_point + from_rows, wanted = kUnfollowed * std::max(allowed, error - both);
-      unfollowed = std::max(unfollowed, from_point);
-      if (!(both > 2 * wanted)) continue;
-      if (from_point > kMuch * both) factor = std::min(factor, wanted / both);
-      if (from_rows > kMuch * both) factor_of_rows = std::min(factor_of_rows, wanted / both);
-    }
-    if (factor < 1 && limit.least_share > kLeastShare && unfollowed < kIdle * limit.before) {
-      limit.before = unfollowed;
-      if (limit.sight) sight_bytes_ -= limit.sight->bytes();
-      limit.sight.reset();
-      limit.least_share = std::max(limit.least_share * std::max(factor, kMostFurther), kLeastShare);
-      goes_further_[i] = 1;
-    }
-    if (factor_of_rows < 1 && rows_may) goes_further_[i] = 1;
-    least_factor = std::min(least_factor, factor_of_rows);
-  }
-  if (!(least_factor < 1) || !rows_may) return;
-  specular_->least_share = std::max(specular_->least_share * std::max(least_factor, kMostFurther), kLeastShare);
-  new_rows_ = true;
-}
-
-void ReferenceSolver::EndPoints() {
-  std::vector<Spectrum> means(scene_->probes().size());
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    Spectrum& mean = means[probe_of_point_[i]];
-    mean = mean + (1 / points_of_probe_[probe_of_point_[i]]) * coming_[i].irradiance;
-  }
-  double brightest = 0;
-  for (const Spectrum& mean : means) brightest = std::max({brightest, mean[0], mean[1], mean[2]});
-  means_ = std::move(means);
-  values_.swap(coming_);
-  FollowFurther();
-  relative_error_ = 0;
-  double to_improve = 0, of_dark = 0;  // The largest of points that still improve.
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    double relative = 0;
-    dark_[i] = 1;
-    for (int c = 0; c < options_.channels; ++c) {
-      const double size = SizeAt(i, c);
-      relative = std::max(relative, Relative(values_[i].irradiance_error[c], size));
-      if (size > kDark * kFloor * brightest) dark_[i] = 0;
-    }
-    relative_error_ = std::max(relative_error_, relative);
-    if (rounds_ > 0 && relative > options_.target_error) {
-      const bool improves = relative <= kIdle * relative_before_[i] || goes_further_[i] != 0;
-      if (improves) {
-        idle_rounds_[i] = 0;
-      } else if (idle_rounds_[i] < kMostIdleRounds) {
-        ++idle_rounds_[i];
-      }
-    }
-    relative_before_[i] = relative;
-    double& most = dark_[i] != 0 ? of_dark : to_improve;
-    if (idle_rounds_[i] < kMostIdleRounds) most = std::max(most, relative);
-  }
-  dark_waits_ = to_improve > options_.target_error;
-  if (!dark_waits_) to_improve = std::max(to_improve, of_dark);
-  if (rounds_++ == 0) first_relative_error_ = relative_error_;
-  if (relative_error_ <= options_.target_error) {
-    state_ = State::kReached;
-    return;
-  }
-  // It may be the solver's own.
-  if (rounds_ > 1 && to_improve > kIdle * to_improve_) tolerance_ = std::max(kTighter * tolerance_, kLeastTolerance);
-  to_improve_ = to_improve;
-  if (rounds_ == kMostRounds || to_improve <= options_.target_error) {
-    state_ = State::kExhausted;
-    return;
-  }
-  to_improve = std::min(to_improve, kFarthest);
-  // Beside what panels add straight away there is what they add by way of others.
-  std::vector<double> influence = world_->radiosity->Influence();
-  double all = 0;
-  for (const double share : influence) all += share;
-  for (std::size_t i = 0; i < panels(); ++i) {
-    for (const auto& worker : idle_)
-      shares_[i] = std::max(shares_[i], i < worker->shares.size() ? worker->shares[i] : 0);
-    if (all > 0) shares_[i] += influence[i] / all * to_improve / options_.target_error;
-  }
-  split_ = PanelsToSplit(shares_);
-  const auto splits = static_cast<double>(std::count(split_.begin(), split_.end(), 1));
-  const double growth = 1 + splits / static_cast<double>(panels());
-  const bool goes_further = std::find(goes_further_.begin(), goes_further_.end(), 1) != goes_further_.end();
-  if ((splits == 0 && !goes_further) ||
-      growth * growth * static_cast<double>(world_->radiosity->memory()) > kMostMemory) {
-    state_ = State::kExhausted;
-    return;
-  }
-  if (new_rows_) {
-    world_->radiosity->DropRows();
-    idle_.clear();
-  }
-  step_ = Step::kSplit;
 }
 
 }  // namespace flatlight

@@ -17,6 +17,7 @@
 #include "core/plane/exact/exact.h"
 #include "core/plane/exact/light_solver.h"
 #include "core/plane/ray_caster.h"
+#include "core/plane/reference/bounded_solver.h"
 #include "core/plane/reference/radiosity.h"
 #include "core/plane/reference/solved_world.h"
 #include "core/plane/reference/specular_view.h"
@@ -36,43 +37,41 @@ struct ReferenceOptions {
 
 // Light of all bounces at the points of a scene's probes: direct light in closed form, what curves reflect from panels
 // that are split until the bound on the error is small enough. Works in rounds, each with a finer mesh.
-class ReferenceSolver {
+class ReferenceSolver final : public BoundedSolver {
  public:
-  // The caster's scene has the world of `scene`. Requires CanFollow(scene), and no derivatives nor max_bounces where
-  // something is a mirror or glass and light is reflected. `before`: to go on from, of the
-  // same world, channels and bounces; its caster is used. Its panels are the first round's; null: there is none.
+  // The caster's scene has the world of `scene`. Requires CanFollow(scene), and no max_bounces where something is a
+  // mirror or glass and light is reflected, nor derivatives if there are Béziers as well. `before`: to go on from, of
+  // the same world, channels and bounces; its caster is used. Its panels are the first round's; null: there is none.
   ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
                   const ReferenceOptions& options, std::unique_ptr<SolvedWorld> before = nullptr);
-  ~ReferenceSolver();
+  ~ReferenceSolver() override;
 
-  // Works for about `budget`, until done or cancelled. For equal rounds done the values have equal bits.
   void Advance(Executor& executor, int threads, const Cancellation& cancellation, const Clock& clock,
-               Clock::Duration budget);
-  enum class State : std::uint8_t {
-    kWorks,
-    kReached,   // The bounds are as small as wanted.
-    kExhausted  // Rounding, or the memory that is allowed, lets them become no smaller.
-  };
-  State state() const { return state_; }
-
-  // By point, after the last round that was finished; empty before the first was.
-  const std::vector<ExactValue>& values() const { return values_; }
-  // By point, before the first round is done: direct light as far as it is known, and bounds on all light.
-  std::vector<ExactValue> FirstValues() const;
-  // The largest bound in units of max(irradiance, 1 % of its probe's mean).
-  double relative_error() const { return relative_error_; }
-  double first_relative_error() const { return first_relative_error_; }
-  int rounds() const { return rounds_; }
+               Clock::Duration budget) override;
+  State state() const override { return state_; }
+  const std::vector<ExactValue>& values() const override { return values_; }
+  std::vector<ExactValue> FirstValues() const override;
+  double relative_error() const override { return relative_error_; }
+  double first_relative_error() const override { return first_relative_error_; }
+  int rounds() const override { return rounds_; }
   std::size_t panels() const { return world_->radiosity->mesh().size(); }
   // The panels, and what they reflect, after the last round. Only when the work is done.
   const PanelMesh& mesh() const { return world_->radiosity->mesh(); }
   const PanelLight& light() const { return world_->radiosity->light(); }
-  // What it knows of the world, for solvers to come. Requires kReached; but for values() and errors nothing is to be
-  // called afterwards.
-  std::unique_ptr<SolvedWorld> TakeWorld();
+  std::unique_ptr<SolvedWorld> TakeWorld() override;
 
  private:
   struct Worker;
+  // Of what errors are relative to, and of the probe's mean.
+  static constexpr double kFloor = 0.01;
+  // A point that is no better after so many rounds has no say any more.
+  static constexpr int kMostIdleRounds = 3;
+  // To which equations are solved in the end: of the target error; and at least.
+  static constexpr double kTolerance = 1e-3;
+  static constexpr double kLeastTolerance = 1e-15;
+  static double Relative(double error, double size) {
+    return error == 0 ? 0 : size > 0 ? error / size : std::numeric_limits<double>::infinity();
+  }
   // How far ways over mirrors and glass are followed from a point, and what that leaves of its bound.
   struct ViewLimit {
     double least_share = 0;
@@ -81,7 +80,19 @@ class ReferenceSolver {
     double before = std::numeric_limits<double>::infinity();  // Unfollowed, when ways were last followed further.
     std::optional<SpecularSight> sight = {};                  // Kept from round to round, if there is memory for it.
   };
-  enum class Step : std::uint8_t { kDirect, kEvents, kRows, kSolve, kCheck, kSpread, kBound, kSlopes, kPoints, kSplit };
+  enum class Step : std::uint8_t {
+    kDirect,
+    kEvents,
+    kRows,
+    kSolve,
+    kCheck,
+    kSpread,
+    kCorrect,
+    kBound,
+    kSlopes,
+    kPoints,
+    kSplit
+  };
 
   std::unique_ptr<Worker> Take();
   void Return(std::unique_ptr<Worker> worker);
@@ -93,6 +104,8 @@ class ReferenceSolver {
   void FindSlopes(Worker& worker, std::size_t panel);
   void Gather(Worker& worker, std::size_t point);
   void NextStep();
+  // Of all workers: shares_, and how much a bound on each panel's light adds to points.
+  void CollectShares(std::vector<double>& importance);
   void EndPoints();
   double SizeAt(std::size_t point, int channel) const;
   void FollowFurther();
@@ -101,7 +114,7 @@ class ReferenceSolver {
   void StartRound();
   // Of a round, once the light of panels is known.
   Step FirstOfPoints() const { return options_.derivatives < 2 ? Step::kPoints : Step::kSlopes; }
-  bool IsWhole() const { return step_ == Step::kSolve || step_ == Step::kBound; }
+  bool IsWhole() const { return step_ == Step::kSolve || step_ == Step::kCorrect || step_ == Step::kBound; }
 
   std::shared_ptr<const Scene> scene_;
   ReferenceOptions options_;
@@ -109,7 +122,8 @@ class ReferenceSolver {
   std::unique_ptr<SolvedWorld> world_;
   std::optional<EventFinder> finder_;  // Until the first mesh.
   std::vector<std::vector<EventPlace>> found_;
-  double tolerance_;  // To which equations are solved.
+  double tolerance_;         // To which equations are solved in the end, and
+  double coarse_tolerance_;  // in this round.
   LightSolver lights_;
   std::optional<SpecularViewOptions> specular_;  // Of rows.
   std::vector<const Receiver*> points_;

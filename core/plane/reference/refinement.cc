@@ -10,7 +10,7 @@ namespace flatlight {
 namespace {
 
 // Of what is allowed in all, for panels that stay.
-constexpr double kLeft = 0.2;
+constexpr double kLeft = 0.5;
 // Panels that add so much less than the worst wait until that one is better.
 constexpr double kWaits = 3e-2;
 constexpr double kShortest = 1e-12;

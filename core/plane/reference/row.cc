@@ -9,6 +9,7 @@
 #include "core/math/check.h"
 #include "core/plane/exact/edge.h"
 #include "core/plane/reference/kernel.h"
+#include "core/plane/reference/moment_sum.h"
 #include "core/plane/reference/quadrature.h"
 
 namespace flatlight {
@@ -150,18 +151,25 @@ bool RowBuilder::Copy(const Panel& panel, std::uint32_t piece, bool high, Row& r
 
 // A panel that is seen as a whole, from afar: light from it is as good as a polynomial of as many coefficients as there
 // are Gauss points, and higher polynomials on the panel give nothing.
-void RowBuilder::AddWhole(const Chart& chart, const Panel& panel, const Receiver& receiver, double roundness,
-                          std::size_t count, double* moments) const {
+void RowBuilder::AddWhole(const Chart& chart, const Panel& panel, const Receiver& receiver, double roundness, bool high,
+                          double* moments) const {
   const std::size_t points = count_.For(roundness);
   const GaussRule& rule = Gauss(points);
   const double* p = LegendreAtGauss(points);
   const double half = 0.5 * (panel.high - panel.low);
-  const std::size_t own = std::min(count, points);
-  for (std::size_t i = 0; i < points; ++i, p += points) {
+  // Loops of constant length, for they take most of the time.
+  double sum[kTabulated] = {};
+  static_assert(kTabulated >= kResidualCoefficients);
+  for (std::size_t i = 0; i < points; ++i, p += kTabulated) {
     const Chart::Place place = chart.At(panel.At(rule.node[i]));
     const double weight = half * rule.weight[i] * place.speed * Kernel(receiver, place, panel.side, 0).Value();
-    for (std::size_t k = 0; k < own; ++k) moments[k] += weight * p[k];
+    if (high) {
+      for (std::size_t k = 0; k < kTabulated; ++k) sum[k] += weight * p[k];
+    } else {
+      for (std::size_t k = 0; k < kLightCoefficients; ++k) sum[k] += weight * p[k];
+    }
   }
+  std::copy_n(sum, high ? kResidualCoefficients : kLightCoefficients, moments);
 }
 
 void RowBuilder::AddStretch(const PanelMesh& mesh, const Receiver& receiver, const Row::Stretch& stretch, bool high,
@@ -174,7 +182,6 @@ void RowBuilder::AddStretch(const PanelMesh& mesh, const Receiver& receiver, con
                                           mesh.panels().begin() + static_cast<std::ptrdiff_t>(range.last),
                                           [&](const Panel& panel) { return panel.high <= stretch.low; });
   const std::size_t count = high ? kResidualCoefficients : kLightCoefficients;
-  double p[kResidualCoefficients];
   for (auto i = static_cast<std::size_t>(first - mesh.panels().begin()); i < range.last; ++i) {
     const Panel& panel = mesh.panels()[i];
     const double from = std::max(stretch.low, panel.low), to = std::min(stretch.high, panel.high);
@@ -185,12 +192,10 @@ void RowBuilder::AddStretch(const PanelMesh& mesh, const Receiver& receiver, con
     const bool whole = from == panel.low && to == panel.high && radius == 0;
     const double roundness = whole ? chart.Roundness(receiver.position, from, to) : 0;
     if (whole && roundness >= PointCount::kNearest) {
-      AddWhole(chart, panel, receiver, roundness, count, moments);
+      AddWhole(chart, panel, receiver, roundness, high, moments);
     } else {
-      const auto add_weight = [&](double u, double weight) {
-        Legendre(panel.Local(u), count, p);
-        for (std::size_t k = 0; k < count; ++k) moments[k] += weight * p[k];
-      };
+      MomentSum sum(high);
+      const auto add_weight = [&](double u, double weight) { sum.Add(panel.Local(u), weight); };
       const auto add = [&](double u, const Chart::Place& place, double weight) {
         add_weight(u, weight * Kernel(receiver, place, stretch.side, radius).Value());
       };
@@ -199,6 +204,7 @@ void RowBuilder::AddStretch(const PanelMesh& mesh, const Receiver& receiver, con
         add_weight(u, std::abs(SineTo(chart, receiver, end) - SineTo(chart, receiver, begin)));
       };
       ForEachPoint(chart, receiver.position, radius != 0, high ? high_count_ : count_, from, to, 0, add, rest);
+      std::copy_n(sum.Finish(), count, moments);
     }
     AddEntry(moments, count, row);
   }

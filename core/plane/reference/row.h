@@ -46,9 +46,12 @@ struct Row {
   double Tint(std::size_t p, std::size_t channel) const { return tints.empty() ? 1 : tints[p].value[channel]; }
   // Irradiance from a polynomial of kLightCoefficients on the p-th entry's panel, but for its tint.
   double TimesLight(std::size_t p, const double* coefficients) const {
-    double sum = 0;
-    for (std::size_t k = 0; k < kLightCoefficients; ++k) sum += low[p * kLightCoefficients + k] * coefficients[k];
-    return sum;
+    static_assert(kLightCoefficients == 8);
+    // In four sums, which need not wait for each other.
+    const double* m = &low[p * kLightCoefficients];
+    const double* c = coefficients;
+    return ((m[0] * c[0] + m[4] * c[4]) + (m[1] * c[1] + m[5] * c[5])) +
+           ((m[2] * c[2] + m[6] * c[6]) + (m[3] * c[3] + m[7] * c[7]));
   }
   // The same of kResidualCoefficients.
   double Times(std::size_t p, const double* coefficients) const {
@@ -84,7 +87,7 @@ class RowBuilder {
 
  private:
   void AddStretch(const PanelMesh& mesh, const Receiver& receiver, const Row::Stretch& stretch, bool high, Row& row);
-  void AddWhole(const Chart& chart, const Panel& panel, const Receiver& receiver, double roundness, std::size_t count,
+  void AddWhole(const Chart& chart, const Panel& panel, const Receiver& receiver, double roundness, bool high,
                 double* moments) const;
   // Adds what is emitted over mirrors and through glass.
   void AddEmission(const Receiver& receiver, Row& row);

@@ -30,6 +30,8 @@ class SpecularGather {
   }
 
   SpecularView& view() { return view_; }
+  // Of irradiance per radiance, over the whole half circle.
+  double tolerance() const { return tolerance_; }
   void set_least_share(double least_share) {
     // What is less is rounding of places: halves of a stretch would differ by it however short they were.
     constexpr double kLeastTolerance = 1e-13;
@@ -50,22 +52,30 @@ class SpecularGather {
   template <typename Add>
   void OfPanels(const Receiver& receiver, const SpecularPiece& piece, const PanelMesh& mesh, std::size_t count,
                 const Add& add) const {
+    VisitPanels(receiver, piece, mesh, [&](std::size_t panel, const Cuts::Cut& begin, const Cuts::Cut& end) {
+      add(panel, [&] { return Of(receiver, piece, &mesh.panels()[panel], count, begin.at, end.at); });
+    });
+  }
+  // Calls visit(panel, begin, end) for them: the numbers between which a panel is seen; what has no mark there is an
+  // end of the piece.
+  template <typename Visit>
+  void VisitPanels(const Receiver& receiver, const SpecularPiece& piece, const PanelMesh& mesh,
+                   const Visit& visit) const {
     if (piece.element == ElementId::kNone) return;
     const PanelMesh::Range range = mesh.On(piece.element, piece.side);
     if (range.first == range.last) return;
     const Chart& chart = charts_[static_cast<std::size_t>(piece.element)];
     Cuts cuts(piece.begin, piece.end);
     for (std::size_t i = range.first + 1; i < range.last; ++i)
-      cuts.AddRoots(piece.lines, piece.lines.LeftOf(chart.At(mesh.panels()[i].low).position));
+      cuts.AddPassing(piece.lines, {chart.At(mesh.panels()[i].low).position});
     // Lines may pass the place where panels meet without ending there.
     std::size_t panel = range.last;
-    double begin = piece.begin, end = piece.begin;
+    Cuts::Cut begin{piece.begin, {}}, end = begin;
     const auto finish = [&] {
-      if (panel == range.last) return;
-      add(panel, [&] { return Of(receiver, piece, &mesh.panels()[panel], count, begin, end); });
+      if (panel != range.last) visit(panel, begin, end);
     };
-    cuts.VisitStretches([&](double from, double to) {
-      const std::size_t next = PanelAt(receiver, piece, mesh, 0.5 * (from + to));
+    cuts.VisitCuts([&](const Cuts::Cut& from, const Cuts::Cut& to) {
+      const std::size_t next = PanelAt(receiver, piece, mesh, 0.5 * (from.at + to.at));
       if (next != panel) {
         finish();
         panel = next, begin = from;
@@ -87,7 +97,7 @@ class SpecularGather {
 
   const Scene& scene_;
   const std::vector<Chart>& charts_;
-  double tolerance_ = 0;  // Of irradiance per radiance, over the whole half circle.
+  double tolerance_ = 0;
   SpecularView view_;
 };
 

@@ -39,7 +39,7 @@ void SpecularView::FindCuts(const Receiver& receiver, const Beam& beam, Cuts& cu
     if (own || !PassBy(beam.lines, element)) cuts.AddEndsOf(element, beam.lines);
   }
   for (const double t : events) cuts.Add(beam.lines.At(t));
-  for (const Point2 crossing : crossings_) cuts.AddRoots(beam.lines, beam.lines.LeftOf(crossing));
+  for (const Point2 crossing : crossings_) cuts.AddPassing(beam.lines, {crossing});
 }
 
 // Whether all its lines are as near to one another as elements are to the Béziers that they follow.

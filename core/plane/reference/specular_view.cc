@@ -98,16 +98,19 @@ Vector2 FrontOf(const Element& segment) {
   return Left(along / Length(along));
 }
 
-// Of the indices of refraction behind a curve and before it.
+// Irradiance of radiance 1 that comes from between two directions.
+double SinesBetween(double from, double to) { return std::max(SinCos(to).sin - SinCos(from).sin, 0.0); }
+
+}  // namespace
+
 double IndexRatio(const Material& material, Side side) {
   const auto* border = std::get_if<Dielectric>(&material);
   return border == nullptr ? 1 : side == Side::kFront ? border->ior : 1 / border->ior;
 }
 
-// Irradiance of radiance 1 that comes from between two directions.
-double SinesBetween(double from, double to) { return std::max(SinCos(to).sin - SinCos(from).sin, 0.0); }
-
-}  // namespace
+bool ComesFromCircle(const Scene& scene, const Receiver& receiver, const SpecularWay& way, ElementId element) {
+  return IsOwnCircle(scene, LastOf(receiver, way), scene.element(element));
+}
 
 ElementId LastOf(const Receiver& receiver, const SpecularWay& way) {
   return way.links.empty() ? receiver.element : way.links.back().element;
@@ -156,9 +159,8 @@ std::optional<SpecularRay> FollowWay(const Scene& scene, const SpecularWay& way,
 
 std::optional<double> DistanceBehind(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
                                      const SpecularRay& ray, ElementId element, bool far) {
-  const ElementId last = LastOf(receiver, way);
-  const Element& to = scene.element(element);
-  return Distance(to, ray.from, ray.direction, far, IsOwnCircle(scene, last, to));
+  const bool own_circle = ComesFromCircle(scene, receiver, way, element);
+  return Distance(scene.element(element), ray.from, ray.direction, far, own_circle);
 }
 
 std::size_t BytesOf(const SpecularPiece& piece) {
@@ -169,7 +171,7 @@ std::size_t BytesOf(const SpecularPiece& piece) {
 std::size_t SpecularSight::bytes() const {
   std::size_t bytes = 0;
   for (const SpecularPiece& piece : pieces) bytes += BytesOf(piece);
-  return bytes;
+  return bytes + unfollowed.size() * sizeof(UnfollowedBeam);
 }
 
 bool HasSpecular(const Scene& scene) {
@@ -205,6 +207,7 @@ SpecularView::SpecularView(const RayCaster& caster, const SpecularViewOptions& o
 
 const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
   pieces_.clear();
+  unfollowed_.clear();
   lost_ = 0;
   numbers_ = 0;
   const auto way = std::make_shared<SpecularWay>();
@@ -215,42 +218,58 @@ const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
   const auto directions =
       std::make_shared<const Directions>(Directions{-0.5 * std::numbers::pi, 0.5 * std::numbers::pi, false, nullptr});
   Fan(
-      way, directions, 0, 1, 1, [](double, double) { return true; }, LineFit{});
+      way, directions, {0, 1, nullptr, nullptr}, 1, [](double, double) { return true; }, LineFit{});
   std::size_t grown = 0;
   while (!beams_.empty()) {
     const Beam beam = beams_.top();
     beams_.pop();
     if (beam.weight < options_.least_share || grown >= options_.most_ways) {
       lost_ += beam.weight;
+      unfollowed_.push_back(
+          {beam.directions, beam.begin, beam.end, beam.begins, beam.ends, beam.share * beam.way->tint.Max()});
       continue;
     }
     ++grown;
     Grow(receiver, beam);
   }
   lost_ *= growth_;
+  for (UnfollowedBeam& beam : unfollowed_) beam.share *= growth_;
   return pieces_;
 }
 
 template <typename Hopeful>
 void SpecularView::Fan(const std::shared_ptr<const SpecularWay>& way,
-                       const std::shared_ptr<const Directions>& directions, double low, double high, double worth,
+                       const std::shared_ptr<const Directions>& directions, const Stretch& stretch, double worth,
                        const Hopeful& hopeful, const LineFit& fit) {
   const auto line = [&](double x) -> std::optional<DirectedLine> {
     const std::optional<SpecularRay> ray = FollowWay(scene_, *way, directions->At(x));
     if (!ray) return std::nullopt;
     return DirectedLine{ray->direction, Cross(ray->direction, ray->from - Point2{})};
   };
+  std::shared_ptr<const MovingEnd> between;
+  if (stretch.begins || stretch.ends) {
+    between = std::make_shared<const MovingEnd>(
+        MovingEnd{.way = nullptr,
+                  .mark = {},
+                  .between = MovingEnd::Between{stretch.begin, stretch.end, stretch.begins, stretch.ends}});
+  }
   LineFamily::Fit(
-      low, high, line, hopeful,
+      stretch.begin, stretch.end, line, hopeful,
       [&](const LineFamily& lines) {
+        const double begin = lines.begin + LineFamily::kOverlap, end = lines.end - LineFamily::kOverlap;
         Push({.way = way,
               .directions = directions,
               .lines = lines,
-              .begin = lines.begin + LineFamily::kOverlap,
-              .end = lines.end - LineFamily::kOverlap});
+              .begin = begin,
+              .end = end,
+              .begins = begin <= stretch.begin + LineFamily::kOverlap ? stretch.begins : between,
+              .ends = end >= stretch.end - LineFamily::kOverlap ? stretch.ends : between});
       },
-      [&](double begin, double end) {
-        lost_ += worth * SinesBetween(directions->At(std::max(begin, low)), directions->At(std::min(end, high)));
+      [&](double low, double high) {
+        const double begin = std::max(low, stretch.begin), end = std::min(high, stretch.end);
+        lost_ += worth * SinesBetween(directions->At(begin), directions->At(end));
+        unfollowed_.push_back({directions, begin, end, begin == stretch.begin ? stretch.begins : between,
+                               end == stretch.end ? stretch.ends : between, worth});
       },
       fit);
 }
@@ -273,26 +292,32 @@ void SpecularView::Grow(const Receiver& receiver, const Beam& beam) {
   Cuts cuts(beam.begin, beam.end);
   FindCuts(receiver, beam, cuts);
   std::optional<Met> met;
-  double begin = beam.begin, end = beam.begin;
+  Cuts::Cut begin{beam.begin, {}}, end = begin;
+  const auto moving = [&](const Cuts::Cut& cut) -> std::shared_ptr<const MovingEnd> {
+    if (cut.mark) return std::make_shared<const MovingEnd>(MovingEnd{.way = beam.way, .mark = *cut.mark});
+    if (cut.at == beam.begin) return beam.begins;
+    // Events of Béziers have no mark.
+    return cut.at == beam.end ? beam.ends : nullptr;
+  };
   const auto finish = [&] {
-    if (!met || !(end > begin)) return;
+    if (!met || !(end.at > begin.at)) return;
     if (met->doubtful) {
-      lost_ += MostOf(beam, begin, end);
+      lost_ += MostOf(beam, begin.at, end.at);
     } else {
-      Meet(receiver, beam, *met, begin, end);
+      Meet(receiver, beam, *met, {begin.at, end.at, moving(begin), moving(end)});
     }
   };
   const bool follows = scene_.bezier_distance() > 0;
-  cuts.VisitStretches([&](double from, double to) {
+  cuts.VisitCuts([&](const Cuts::Cut& from, const Cuts::Cut& to) {
     std::optional<Met> next;
-    if (follows && !beam.way->links.empty() && IsNarrow(beam, from, to)) {
+    if (follows && !beam.way->links.empty() && IsNarrow(beam, from.at, to.at)) {
       next = Met{.doubtful = true};
     } else {
-      next = MetBy(receiver, beam, 0.5 * (from + to));
+      next = MetBy(receiver, beam, 0.5 * (from.at + to.at));
     }
     if (next != met) {
       finish();
-      if (follows && met && next) lost_ += DoubtAt(receiver, beam, *met, *next, from);
+      if (follows && met && next) lost_ += DoubtAt(receiver, beam, *met, *next, from.at);
       met = next;
       begin = from;
     }
@@ -305,10 +330,13 @@ double SpecularView::MostOf(const Beam& beam, double begin, double end) const {
   return SinesBetween(beam.directions->At(begin), beam.directions->At(end)) * beam.share * beam.way->tint.Max();
 }
 
-void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& met, double begin, double end) {
+void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& met, const Stretch& stretch) {
+  const double begin = stretch.begin, end = stretch.end;
   const bool direct = beam.way->links.empty();
   const auto add = [&] {
-    if (!direct) pieces_.push_back({beam.way, met.element, met.side, met.far, beam.directions, beam.lines, begin, end});
+    if (direct) return;
+    pieces_.push_back({beam.way, met.element, met.side, met.far, beam.directions, beam.lines, begin, end,
+                       stretch.begins, stretch.ends});
   };
   if (met.element == ElementId::kNone) {
     if (scene_.traits().environment) add();
@@ -318,7 +346,7 @@ void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& m
   const bool specular = IsSpecular(curve.material);
   if (!curve.EmittedRadiance(met.side).IsBlack() || (Reflects(curve) && !specular)) add();
   if (!specular || !Reflects(curve)) return;
-  if (!std::holds_alternative<Dielectric>(curve.material)) return Turn(receiver, beam, met, false, begin, end);
+  if (!std::holds_alternative<Dielectric>(curve.material)) return Turn(receiver, beam, met, false, stretch);
   // Where total reflection begins.
   std::vector<double> cuts(1, begin);
   if (const auto squares = SquaresBehind(receiver, beam, met, begin, end)) {
@@ -335,9 +363,17 @@ void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& m
     }
   }
   cuts.push_back(end);
+  std::shared_ptr<const MovingEnd> begins = stretch.begins;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    Turn(receiver, beam, met, false, cuts[i], cuts[i + 1]);
-    Turn(receiver, beam, met, true, cuts[i], cuts[i + 1]);
+    std::shared_ptr<const MovingEnd> ends = stretch.ends;
+    if (i + 2 < cuts.size()) {
+      ends = std::make_shared<const MovingEnd>(
+          MovingEnd{.way = beam.way, .mark = {}, .border = met.element, .side = met.side, .far = met.far});
+    }
+    const Stretch part{cuts[i], cuts[i + 1], begins, ends};
+    begins = ends;
+    Turn(receiver, beam, met, false, part);
+    Turn(receiver, beam, met, true, part);
   }
 }
 
@@ -375,8 +411,9 @@ std::optional<std::array<double, Bernstein::kCount>> SpecularView::SquaresBehind
   return squares;
 }
 
-void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& met, bool crosses, double begin,
-                        double end) {
+void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& met, bool crosses,
+                        const Stretch& stretch) {
+  const double begin = stretch.begin, end = stretch.end;
   const Element& element = scene_.element(met.element);
   const Curve& curve = scene_.curve(element.curve);
   const double ratio = IndexRatio(curve.material, met.side);
@@ -384,6 +421,7 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
   const double most = SinesBetween(beam.directions->At(begin), beam.directions->At(end)) * worth;
   if (most < options_.least_share) {
     lost_ += most;
+    unfollowed_.push_back({beam.directions, begin, end, stretch.begins, stretch.ends, worth});
     return;
   }
   auto way = std::make_shared<SpecularWay>(*beam.way);
@@ -414,7 +452,9 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
           .directions = beam.directions,
           .lines = beam.lines.Reflected(element.a, front),
           .begin = begin,
-          .end = end});
+          .end = end,
+          .begins = stretch.begins,
+          .ends = stretch.ends});
     return;
   }
   // Whether what follows moves as a root there.
@@ -425,7 +465,9 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
   const double beside = kBeside * (end - begin);
   const bool eased = bends(begin + beside) || bends(end - beside);
   const std::shared_ptr<const Directions> directions =
-      eased ? std::make_shared<const Directions>(Directions{begin, end, true, beam.directions}) : beam.directions;
+      eased ? std::make_shared<const Directions>(
+                  Directions{begin, end, true, beam.directions, stretch.begins, stretch.ends})
+            : beam.directions;
   // Whether some ray of the stretch may not be reflected totally.
   bool some_fail = false;
   const auto hopeful = [&](double from, double to) {
@@ -441,8 +483,7 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
   fit.least_part = std::min(options_.least_share / most, 1e-3);
   // Nor better than directions are.
   fit.shift = [&](double x) { return directions->Indistinct(x); };
-  const double low = eased ? 0 : begin, high = eased ? 1 : end;
-  Fan(shared, directions, low, high, worth, hopeful, fit);
+  Fan(shared, directions, eased ? Stretch{0, 1, nullptr, nullptr} : stretch, worth, hopeful, fit);
   // What was taken as it is beside where rays begin to fail.
   if (some_fail) lost_ += 2 * fit.least_part * most;
 }

@@ -64,10 +64,32 @@ std::optional<SpecularRay> FollowWay(const Scene& scene, const SpecularWay& way,
 ElementId LastOf(const Receiver& receiver, const SpecularWay& way);
 // Whether rays go on from an element, by reflection or passage.
 bool TurnsAt(const Scene& scene, ElementId element);
+// Of the indices of refraction behind a curve and before it, for light that comes from a side; 1 for mirrors.
+double IndexRatio(const Material& material, Side side);
+
+// Whether an element is an arc on whose circle the way's rays begin: at its last link or, without one, the receiver.
+bool ComesFromCircle(const Scene& scene, const Receiver& receiver, const SpecularWay& way, ElementId element);
 
 // The way that a ray goes on to the line or circle of what it meets, `far` as in ChainLink.
 std::optional<double> DistanceBehind(const Scene& scene, const Receiver& receiver, const SpecularWay& way,
                                      const SpecularRay& ray, ElementId element, bool far);
+
+// Why a stretch of directions ends where it does: so its end moves as the receiver does.
+struct MovingEnd {
+  // A stretch that is cut for no such reason: at places that keep their parts of it.
+  struct Between {
+    double begin = 0, end = 0;
+    std::shared_ptr<const MovingEnd> begins, ends;  // Null: do not move.
+  };
+
+  std::shared_ptr<const SpecularWay> way;  // Of the ray that ends it.
+  LineMark mark;                           // That ray passes this behind the last link;
+  // or, if there is a border, all rays beyond are reflected totally there;
+  ElementId border = ElementId::kNone;
+  Side side = Side::kFront;             // on which the border is met,
+  bool far = false;                     // and where, as in ChainLink;
+  std::optional<Between> between = {};  // or all this is nothing.
+};
 
 // Directions theta by a number in [0, 1] of which all that follows is a smooth function.
 struct Directions {
@@ -77,6 +99,7 @@ struct Directions {
   // level at its ends makes that smooth there.
   bool eased = false;
   std::shared_ptr<const Directions> outer;
+  std::shared_ptr<const MovingEnd> begins = {}, ends = {};  // What from and to move with; null: they do not.
 
   // The number by which the outer knows the direction; theta, if there is none.
   double Outward(double x) const { return from + (to - from) * (eased ? x * x * (3 - 2 * x) : x); }
@@ -101,15 +124,27 @@ struct SpecularPiece {
   LineFamily lines;  // By the number of a direction, behind the last link.
   double begin = 0;  // Of the piece: numbers, too.
   double end = 0;
+  std::shared_ptr<const MovingEnd> begins, ends;  // What these move with; null: they do not.
 };
 
 // What a piece holds, its way included, about.
 std::size_t BytesOf(const SpecularPiece& piece);
 
+// Ways that are not followed further.
+struct UnfollowedBeam {
+  std::shared_ptr<const Directions> directions;
+  double begin = 0, end = 0;
+  std::shared_ptr<const MovingEnd> begins, ends;
+  double share = 0;  // Of radiance that could come, at most: times the difference of sines it is what is lost.
+};
+
 // What is seen from a point over mirrors and through glass.
 struct SpecularSight {
   std::vector<SpecularPiece> pieces;
-  double lost = 0;  // What else could have come: irradiance per radiance.
+  // What else could have come: irradiance per radiance, in beams that are not followed, beside rays that fail and where
+  // it is not known what is met.
+  double lost = 0;
+  std::vector<UnfollowedBeam> unfollowed;  // Those beams, where derivatives are wanted.
 
   std::size_t bytes() const;
 };
@@ -141,6 +176,7 @@ class SpecularView {
   const std::vector<SpecularPiece>& From(const Receiver& receiver);
   // What ways that were not followed further could have brought the receiver of the last call: irradiance per radiance.
   double lost() const { return lost_; }
+  const std::vector<UnfollowedBeam>& unfollowed() const { return unfollowed_; }
 
  private:
   struct Beam {
@@ -148,6 +184,7 @@ class SpecularView {
     std::shared_ptr<const Directions> directions;
     LineFamily lines;
     double begin = 0, end = 0;
+    std::shared_ptr<const MovingEnd> begins = {}, ends = {};
     double share = 0;   // The largest of its rays, about.
     double weight = 0;  // About the most irradiance per radiance that it can carry.
     std::size_t number = 0;
@@ -179,8 +216,13 @@ class SpecularView {
   double DoubtAt(const Receiver& receiver, const Beam& beam, const Met& before, const Met& after, double x) const;
   std::optional<double> DistanceTo(const Receiver& receiver, const Beam& beam, const Met& met,
                                    const SpecularRay& ray) const;
-  void Meet(const Receiver& receiver, const Beam& beam, const Met& met, double begin, double end);
-  void Turn(const Receiver& receiver, const Beam& beam, const Met& met, bool crosses, double begin, double end);
+  // Of a beam.
+  struct Stretch {
+    double begin = 0, end = 0;
+    std::shared_ptr<const MovingEnd> begins, ends;
+  };
+  void Meet(const Receiver& receiver, const Beam& beam, const Met& met, const Stretch& stretch);
+  void Turn(const Receiver& receiver, const Beam& beam, const Met& met, bool crosses, const Stretch& stretch);
   // Square of the cosine to the normal behind the border that is met, if `behind`, or before it; negative where all is
   // reflected.
   std::optional<double> SquaredCosine(const Receiver& receiver, const Beam& beam, const Met& met, bool behind,
@@ -188,11 +230,11 @@ class SpecularView {
   // The same at the places that a polynomial goes through between two numbers; absent if one of them is.
   std::optional<std::array<double, Bernstein::kCount>> SquaresBehind(const Receiver& receiver, const Beam& beam,
                                                                      const Met& met, double from, double to) const;
-  // Pushes the beams of a way's rays between two numbers of directions; as LineFamily::Fit. What is given up is lost:
-  // `worth` times its part of the half circle.
+  // Pushes the beams of a way's rays in a stretch of directions; as LineFamily::Fit. What is given up is not followed:
+  // `worth` times its part of the half circle may be lost.
   template <typename Hopeful>
   void Fan(const std::shared_ptr<const SpecularWay>& way, const std::shared_ptr<const Directions>& directions,
-           double low, double high, double worth, const Hopeful& hopeful, const LineFit& fit);
+           const Stretch& stretch, double worth, const Hopeful& hopeful, const LineFit& fit);
   void Push(Beam beam);
 
   const RayCaster& caster_;
@@ -205,6 +247,7 @@ class SpecularView {
   std::size_t numbers_ = 0;
   std::vector<SpecularPiece> pieces_;
   double lost_ = 0;
+  std::vector<UnfollowedBeam> unfollowed_;
 };
 
 }  // namespace flatlight

@@ -28,4 +28,8 @@ PointCount::PointCount(std::size_t degree, int digits) : least_(std::max<std::si
   }
 }
 
+PointCount::PointCount(const PointCount& a, const PointCount& b) : least_(std::max(a.least_, b.least_)) {
+  for (std::size_t n = 0; n <= kMostGaussPoints; ++n) roundness_[n] = std::max(a.roundness_[n], b.roundness_[n]);
+}
+
 }  // namespace flatlight

@@ -21,6 +21,8 @@ class PointCount {
  public:
   // For polynomials of a degree times the kernel, to `digits` decimal digits.
   PointCount(std::size_t degree, int digits);
+  // For both.
+  PointCount(const PointCount& a, const PointCount& b);
   static constexpr double kNearest = 1.6;  // Sum of the distances to the ends over the stretch's length.
   // Requires roundness >= kNearest.
   std::size_t For(double roundness) const {

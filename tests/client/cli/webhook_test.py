@@ -7,6 +7,7 @@ import hmac
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -50,7 +51,7 @@ class WebhookTest(CliCase):
         path, headers, body = post
         signed = f"{headers['webhook-id']}.{headers['webhook-timestamp']}.".encode() + body
         digest = hmac.new(base64.b64decode(secret.removeprefix("whsec_")), signed, hashlib.sha256).digest()
-        return headers["webhook-signature"] == "v1," + base64.b64encode(digest).decode()
+        return "v1," + base64.b64encode(digest).decode() in headers["webhook-signature"].split(" ")
 
     def log(self):
         with open(self.path("calls.jsonl")) as file:
@@ -96,6 +97,35 @@ class WebhookTest(CliCase):
         daemon.__exit__()
         self.serve()
         self.assertEqual(self.run_cli("webhook-secret").stdout.strip(), secret)
+
+    def test_a_secret_is_rotated(self):
+        with Receiver() as receiver:
+            daemon = self.serve(receiver.host)
+            first = self.run_cli("webhook-secret").stdout.strip()
+            run = self.run_cli("webhook-secret", "--rotate", "--keep-earlier", "12h")
+            second = run.stdout.strip()
+            self.assertNotEqual(second, first)
+            self.assertRegex(run.stderr, rf"signed with {re.escape(first[:12])}\.\.\. too, until \d{{4}}-")
+            self.assertNotIn(first, run.stderr)
+            self.await_state(self.submit(receiver.url), "DELIVERED")
+            post = receiver.posts[0]
+            self.assertEqual(len(post[1]["webhook-signature"].split(" ")), 2)
+            self.assertTrue(self.verify(post, first) and self.verify(post, second))
+            with open(self.path("data/audit.jsonl")) as file:
+                text = file.read()
+            self.assertIn('"ServerService/RotateWebhookSecret"', text)
+            self.assertNotIn("whsec", text)
+            # The earlier ones are kept over a restart too, and are over at once where somebody else knows them.
+            daemon.__exit__()
+            self.serve(receiver.host)
+            self.assertEqual(self.run_cli("webhook-secret").stdout.strip(), second)
+            third = self.run_cli("webhook-secret", "--rotate", "--keep-earlier", "0").stdout.strip()
+            self.await_state(self.submit(receiver.url), "DELIVERED")
+            post = receiver.posts[1]
+            self.assertTrue(self.verify(post, third))
+            self.assertFalse(self.verify(post, first) or self.verify(post, second))
+            self.assertIn("allowed: 0 to 2592000",
+                          self.run_cli("webhook-secret", "--rotate", "--keep-earlier", "31d", status=2).stderr)
 
     def test_without_a_folder_too(self):
         with Receiver() as receiver, Daemon(FLATLIGHTD, arguments=("--webhook-allow", receiver.host)) as daemon:

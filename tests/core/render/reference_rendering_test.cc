@@ -244,7 +244,7 @@ TEST(ReferenceRenderingTest, TheDarkNeedsNoWork) {
   EXPECT_EQ(ended.field->error_bound, 0);
 }
 
-TEST(ReferenceRenderingTest, OverMirrorsThereAreNoDerivativesUnlessLightIsDirect) {
+TEST(ReferenceRenderingTest, OverMirrorsThereAreDerivativesWhereTheyAreAskedFor) {
   SceneMaker maker = SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 2);
   maker.Segment("mirror", {0, 0}, {0.5, 0}, {.material = MirrorDescription{{0.9}}});
   Settings settings;
@@ -252,6 +252,11 @@ TEST(ReferenceRenderingTest, OverMirrorsThereAreNoDerivativesUnlessLightIsDirect
   const Ended all = Render(maker.Build(), settings);
   EXPECT_GT(all.field->probes[0].irradiance[0], 0);
   EXPECT_TRUE(all.field->probes[0].gradient.empty());
+  settings.derivatives = Derivatives::kHessian;
+  const Ended with = Render(maker.Build(), settings);
+  EXPECT_FALSE(with.field->probes[0].gradient.empty());
+  EXPECT_FALSE(with.field->probes[0].hessian.empty());
+  settings.derivatives.reset();
   settings.max_bounces = 0;
   EXPECT_FALSE(Render(maker.Build(), settings).field->probes[0].gradient.empty());
 }
@@ -261,11 +266,9 @@ TEST(ReferenceRenderingTest, RefusesWhatItCannotDoOverMirrors) {
   maker.Segment("glass", {0, 0}, {0.5, 0}, {.material = MirrorDescription{{0.9}}});
   EXPECT_THAT(Mistakes(*maker.Build(), Reference(1e-3)), ElementsAre());
   Settings more = Reference(1e-3);
-  more.derivatives = Derivatives::kGradient;
   more.max_bounces = 3;
   EXPECT_THAT(Mistakes(*maker.Build(), more),
-              ElementsAre(HasSubstr("settings.derivatives: reference gives none of light that comes over mirrors"),
-                          HasSubstr("settings.maxBounces: is 3, but over mirrors and through glass reference counts")));
+              ElementsAre(HasSubstr("settings.maxBounces: is 3, but over mirrors, glass and phong lobes reference")));
   maker.Bezier("bend", {{0, 0.2}, {0.1, 0.3}, {0.2, 0.3}, {0.3, 0.2}});
   EXPECT_THAT(Mistakes(*maker.Build(), Reference(1e-3)), ElementsAre());
   maker.Light(PointLightDescription{.position = {0, 0.5}, .power = {1}});
@@ -273,13 +276,64 @@ TEST(ReferenceRenderingTest, RefusesWhatItCannotDoOverMirrors) {
               ElementsAre(HasSubstr("settings.method: reference leaves out what plane.lights send over mirrors")));
 }
 
-TEST(ReferenceRenderingTest, RefusesWhatItCannotDo) {
+// In colour, with what has and what has not a surface.
+TEST(ReferenceRenderingTest, PhongLobesReflectInColour) {
+  SceneMaker maker = SquareRoom({.reflectance = {0.5, 0.4, 0.3}}, 1);
+  maker.Segment("lamp", {0.4, 0.9}, {-0.4, 0.9}, {.radiance = {1}});
+  maker.Segment("gloss", {-0.5, -0.7}, {0.5, -0.7}, {.material = PhongDescription{{0.9, 0.6, 0.3}, 8}});
+  maker.Light(PointLightDescription{.position = {0, 0.5}, .power = {1}}).Probe("gloss", 2);
+  const auto scene = maker.Build();
+  const Ended ended = Render(scene, Reference(3e-3));
+  EXPECT_EQ(ended.reason, EndReason::kTargetReached);
+  const ProbeField& walls = ended.field->probes[1];
+  EXPECT_TRUE(walls.gradient.empty());
+  EXPECT_GT(walls.irradiance[0], 1.01 * walls.irradiance[1]);
+  EXPECT_GT(walls.irradiance[1], 1.01 * walls.irradiance[2]);
+  for (std::size_t i = 0; i < walls.irradiance.size(); ++i) {
+    EXPECT_GT(walls.irradiance_error[i], 0);
+    EXPECT_LE(walls.irradiance_error[i], 3e-3 * walls.irradiance[i]);
+  }
+}
+
+// Before the first round is done there are bounds on all light, whatever they are.
+TEST(ReferenceRenderingTest, EndsAtTheTimeLimitInTheFirstRoundWithPhongLobes) {
+  SceneMaker maker = SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 2);
+  maker.Segment("gloss", {-0.5, 0}, {0.5, 0}, {.material = PhongDescription{{0.5}, 8}});
+  Settings settings = Reference(1e-9);
+  settings.time_limit = 1e-9;
+  const Ended ended = Render(maker.Build(), settings);
+  EXPECT_EQ(ended.reason, EndReason::kTimeLimit);
+  // What is emitted and reflected for ever by half: radiance 2 from the half circle.
+  EXPECT_GE(*ended.field->error_bound, 2);
+  EXPECT_LE(*ended.field->error_bound, 4 * (1 + 1e-9));
+}
+
+TEST(ReferenceRenderingTest, RefusesWhatItCannotDoWithPhongLobes) {
   SceneMaker maker = SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 1);
   maker.Segment("gloss", {0, 0}, {0.5, 0}, {.material = PhongDescription{{0.9}, 5}});
+  maker.Light(PointLightDescription{.position = {0, 0.5}, .power = {1}});
+  EXPECT_THAT(Mistakes(*maker.Build(), Reference(1e-3)), ElementsAre());
+  Settings more = Reference(1e-3);
+  more.derivatives = Derivatives::kGradient;
+  more.max_bounces = 3;
+  EXPECT_THAT(Mistakes(*maker.Build(), more),
+              ElementsAre(HasSubstr("settings.derivatives: reference gives none of light that mirrors"),
+                          HasSubstr("settings.maxBounces: is 3, but over mirrors, glass and phong lobes")));
+  maker.Segment("mirror", {0, -0.5}, {0.5, -0.5}, {.material = MirrorDescription{{0.9}}});
+  maker.Bezier("bend", {{0, 0.2}, {0.1, 0.3}, {0.2, 0.3}, {0.3, 0.2}});
+  EXPECT_THAT(
+      Mistakes(*maker.Build(), Reference(1e-3)),
+      ElementsAre(HasSubstr("\"gloss\" is one, where nothing is a mirror or glass, and curve \"mirror\" is: use"),
+                  HasSubstr("settings.method: reference does scenes with Bézier curves where nothing is")));
+}
+
+TEST(ReferenceRenderingTest, RefusesWhatItCannotDo) {
+  SceneMaker maker = SquareRoom({.reflectance = {0.5}, .radiance = {1}}, 1);
+  maker.Segment("gloss", {0, 0}, {0.5, 0}, {.material = ConductorDescription{{0.9}, 0.5}});
   const auto scene = maker.Build();
   EXPECT_THAT(Mistakes(*scene, Reference(1e-3)),
-              ElementsAre("settings.method: reference does lambertian, mirror and dielectric materials, and curve "
-                          "\"gloss\" has another: use path-tracing"));
+              ElementsAre("settings.method: reference does lambertian, phong, mirror and dielectric materials, and "
+                          "curve \"gloss\" has another: use path-tracing"));
   Settings direct = Reference(1e-3);
   direct.max_bounces = 0;
   EXPECT_THAT(Mistakes(*scene, direct), ElementsAre());

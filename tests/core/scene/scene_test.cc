@@ -89,6 +89,7 @@ TEST(SceneTest, EachMistakeNamesPlaceValueAndWhatIsAllowed) {
   };
   const auto arc = [](SceneDescription& s) -> ArcDescription& { return std::get<ArcDescription>(s.curves[2].shape); };
   const std::vector<Case> cases = {
+      {[&](auto& s) { s.name = std::string(1001, 'x'); }, "name ", "has 1001 bytes; at most 1000 are allowed"},
       {[&](auto& s) { segment(s).a.x = nan; }, "plane.curves[0].segment.a.x ", "is nan"},
       {[&](auto& s) { segment(s).b.y = infinity; }, "plane.curves[0].segment.b.y ", "is inf"},
       {[&](auto& s) { segment(s).b = segment(s).a; }, "plane.curves[0].segment ", "zero length"},

@@ -278,17 +278,28 @@ TEST_F(CallsTest, JobsAreListedInPages) {
 TEST_F(CallsTest, APageOfLargeJobsHasFewerOfThem) {
   LoopbackServer server(Options());
   v1::CreateJobRequest request = NewJob();
-  request.mutable_scene()->mutable_scene()->set_name(std::string(900'000, 'x'));
+  request.mutable_scene()->mutable_scene()->set_name(std::string(1000, 'x'));
+  for (const std::string& name : SkipNames()) request.mutable_settings()->add_no_skip(name);
+  constexpr int kPage = 1000;
+  constexpr std::size_t kMostBytes = 1u << 20;
   std::vector<std::string> created;
-  for (int i = 0; i < 5; ++i) created.push_back(Create(server, request).name());
+  std::size_t bytes = 0;
+  for (int i = 0; i < kPage; ++i) {
+    const v1::Job job = Create(server, request);
+    created.push_back(job.name());
+    bytes += job.ByteSizeLong();
+  }
+  ASSERT_GT(bytes, kMostBytes + kMostBytes / 50) << "one page would hold them all";
   std::vector<std::string> listed;
   v1::ListJobsRequest list;
+  list.set_page_size(kPage);
   do {
     TestContext context;
     v1::ListJobsResponse page;
     const grpc::Status status = server.render().ListJobs(&context, list, &page);
     ASSERT_TRUE(status.ok()) << status.error_message();
-    EXPECT_LE(page.jobs_size(), 2);
+    EXPECT_LT(page.jobs_size(), kPage);
+    EXPECT_LE(page.ByteSizeLong(), kMostBytes + kMostBytes / 50);  // With what frames each job, and the token.
     for (const v1::Job& job : page.jobs()) listed.push_back(job.name());
     list.set_page_token(page.next_page_token());
   } while (!list.page_token().empty());

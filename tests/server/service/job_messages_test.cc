@@ -35,6 +35,7 @@ v1::Job Told(const grpc::Slice& bytes) {
 TEST(JobMessages, AStateIsSerialisedOnce) {
   JobMessages messages;
   const JobRecord job = NewJob();
+  const JobRecord in_store = job;
   const grpc::Slice first = messages.Of(job);
   EXPECT_EQ(Told(first).name(), job.spec->id.Name());
   EXPECT_EQ(Told(first).owner(), "ada");
@@ -60,6 +61,31 @@ TEST(JobMessages, ManyJobsAreToldThoughNotAllAreRemembered) {
     const JobRecord job = NewJob();
     ASSERT_EQ(Told(messages.Of(job)).name(), job.spec->id.Name());
   }
+}
+
+TEST(JobMessages, WhatIsDeletedOrReadFromTheDiskIsNotRemembered) {
+  JobMessages messages;
+  const JobRecord job = NewJob();
+  EXPECT_NE(messages.Of(job).begin(), messages.Of(job).begin()) << "nobody else has its state";
+  const JobRecord in_store = job;
+  const grpc::Slice first = messages.Of(job);
+  EXPECT_EQ(messages.Of(job).begin(), first.begin());
+  messages.Forget(job.spec->id);
+  EXPECT_NE(messages.Of(job).begin(), first.begin());
+}
+
+// Of jobs that are gone there is room for as many as there may be; one that is there is not forgotten for them.
+TEST(JobMessages, ThoseThatAreGoneMakeRoom) {
+  JobMessages messages;
+  const JobRecord job = NewJob();
+  const JobRecord in_store = job;
+  const grpc::Slice first = messages.Of(job);
+  for (int i = 0; i < 20'000; ++i) {
+    const JobRecord gone = NewJob();
+    const JobRecord for_a_while = gone;
+    messages.Of(gone);
+  }
+  EXPECT_EQ(messages.Of(job).begin(), first.begin());
 }
 
 // What is remembered is bounded in bytes, too.

@@ -175,6 +175,9 @@ TEST_F(StorageTest, EveryOlderVersionIsBroughtUpToDate) {
     EXPECT_EQ(archive.Unfinished()->size(), 1u) << "from version " << version;
     EXPECT_THAT((*storage)->Read([](Database& database) { return database.Execute("SELECT title FROM scenes"); }),
                 IsOk());
+    EXPECT_THAT(
+        (*storage)->Read([](Database& database) { return database.Execute("SELECT user FROM webhook_secrets"); }),
+        IsOk());
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "server/store/error.h"
 #include "server/store/job_archive.h"
 #include "server/store/schema.h"
 #include "server/store/storage.h"
@@ -150,6 +151,44 @@ TEST(JobArchiveWebhooks, AnEndAndItsWebhookAreOneChange) {
   EXPECT_EQ(outbox.Due(kNow, 9, 9)->size(), 1u);
   ASSERT_THAT(outbox.Delivered(outbox.Due(kNow, 9, 9)->front().number, kNow), IsOk());
   EXPECT_FALSE(outbox.Of(job)->has_value());
+}
+
+std::vector<std::int64_t> GenerationsOf(const std::vector<SecretTerm>& terms) {
+  std::vector<std::int64_t> generations;
+  for (const SecretTerm& term : terms) generations.push_back(term.generation);
+  return generations;
+}
+
+TEST_F(WebhookOutboxTest, AnEarlierSecretIsUsedUntilItsTimeIsOver) {
+  using std::chrono::hours;
+  EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("ada", kNow)), ElementsAre(0));
+  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow, hours(24))), ElementsAre(1, 0));
+  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow + hours(1), hours(48))), ElementsAre(2, 1, 0));
+  const auto terms = *outbox_.SecretsOf("ada", kNow + hours(2));
+  ASSERT_EQ(terms.size(), 3u);
+  EXPECT_FALSE(terms[0].expire_time);
+  EXPECT_EQ(terms[1].expire_time, kNow + hours(49));
+  EXPECT_EQ(terms[2].expire_time, kNow + hours(24)) << "none gets a longer term than it was given";
+  EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("ada", kNow + hours(24))), ElementsAre(2, 1));
+  EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("ada", kNow + hours(49))), ElementsAre(2));
+  EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("bob", kNow)), ElementsAre(0));
+  // One that others know: no earlier one is used from then on, nor ever again.
+  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow + hours(3), hours(0))), ElementsAre(3));
+  EXPECT_THAT(GenerationsOf(*outbox_.SecretsOf("ada", kNow)), ElementsAre(3));
+}
+
+TEST_F(WebhookOutboxTest, EarlierSecretsAreFew) {
+  using std::chrono::hours;
+  for (std::size_t i = 0; i < kMaxEarlierSecrets; ++i) {
+    ASSERT_THAT(outbox_.RotateSecretOf("ada", kNow, hours(24)), IsOk());
+  }
+  const auto before = GenerationsOf(*outbox_.SecretsOf("ada", kNow));
+  const auto refused = outbox_.RotateSecretOf("ada", kNow + hours(1), hours(24));
+  EXPECT_EQ(refused.status().code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_EQ(RetryAfterOf(refused.status()), std::chrono::milliseconds(hours(23)));
+  EXPECT_EQ(GenerationsOf(*outbox_.SecretsOf("ada", kNow)), before);
+  EXPECT_THAT(outbox_.RotateSecretOf("ada", kNow + hours(24), hours(24)), IsOk());
+  EXPECT_THAT(GenerationsOf(*outbox_.RotateSecretOf("ada", kNow, hours(0))), ElementsAre(7));
 }
 
 }  // namespace

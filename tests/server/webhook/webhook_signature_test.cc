@@ -17,10 +17,19 @@ TEST(WebhookSignature, IsTheHmacOfIdTimestampAndBody) {
 
 TEST(WebhookSignature, EachUserHasASecretOfItsOwn) {
   const std::string key(32, 'k');
-  EXPECT_EQ(WebhookSecret(key, "ada").size(), 32u);
-  EXPECT_EQ(WebhookSecret(key, "ada"), WebhookSecret(key, "ada"));
-  EXPECT_NE(WebhookSecret(key, "ada"), WebhookSecret(key, "bob"));
-  EXPECT_NE(WebhookSecret(key, "ada"), WebhookSecret(std::string(32, 'l'), "ada"));
+  EXPECT_EQ(WebhookSecret(key, "ada", 0).size(), 32u);
+  EXPECT_EQ(WebhookSecret(key, "ada", 3), WebhookSecret(key, "ada", 3));
+  EXPECT_NE(WebhookSecret(key, "ada", 0), WebhookSecret(key, "bob", 0));
+  EXPECT_NE(WebhookSecret(key, "ada", 0), WebhookSecret(std::string(32, 'l'), "ada", 0));
+  EXPECT_NE(WebhookSecret(key, "ada", 0), WebhookSecret(key, "ada", 1));
+  EXPECT_NE(WebhookSecret(key, "ada", 1), WebhookSecret(key, "ada", 2));
+}
+
+// printf 'webhooks of ada' | openssl dgst -sha256 -hmac kkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkk -binary | base64: what
+// receivers were given before secrets could be rotated is good still.
+TEST(WebhookSignature, TheFirstSecretIsThatOfBefore) {
+  EXPECT_EQ(WebhookSecretText(WebhookSecret(std::string(32, 'k'), "ada", 0)),
+            "whsec_wsC5xyPoM3qTYeU2HIhM94DhemjVMVot2TIJepGw9aU=");
 }
 
 }  // namespace

@@ -66,7 +66,9 @@ TEST(ReferenceBoundsTest, NoErrorIsLargerThanItsBound) {
   EXPECT_EQ(gradient.beyond, 0);
   EXPECT_EQ(hessian.beyond, 0);
   EXPECT_GT(irradiance.cautions.size(), 300u);
-  EXPECT_LT(irradiance.MedianCaution(), 16);
+  // What residuals are known to give is in the values, so that these are better than the bounds need them to be.
+  EXPECT_GT(irradiance.MedianCaution(), 20);
+  EXPECT_LT(irradiance.MedianCaution(), 60);
   EXPECT_LT(gradient.MedianCaution(), 100);
   EXPECT_LT(hessian.MedianCaution(), 300);
 }
