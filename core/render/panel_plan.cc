@@ -86,10 +86,6 @@ void CheckPanels(const Scene& scene, const std::string& path, const std::string&
     diagnostics.Add(path, "reference leaves out what plane.lights send over mirrors and glass, and curve \"" +
                               specular + "\" is one: use " + other);
   }
-  if (scene.traits().has_beziers) {
-    diagnostics.Add(path, "reference does scenes with Bézier curves where nothing is a mirror or glass, and curve \"" +
-                              specular + "\" is one: use " + other);
-  }
 }
 
 }  // namespace flatlight

@@ -29,6 +29,7 @@ class Cuts {
 
   Cuts(double begin, double end) : cuts_{{begin, {}}, {end, {}}} {}
 
+  void Add(double u) { Add({u, {}}); }
   void AddRoots(const LineFamily& lines, const Bernstein& f) { AddRoots(lines, f, {}); }
   // Where a line passes a point that lies so far to its left.
   void AddPassing(const LineFamily& lines, const LineMark& mark) {
@@ -61,10 +62,10 @@ class Cuts {
 
   void AddRoots(const LineFamily& lines, const Bernstein& f, const std::optional<LineMark>& mark) {
     const Bernstein::RootList roots = f.Roots();
-    for (std::size_t i = 0; i < roots.count; ++i) {
-      const double u = lines.At(roots.t[i]);
-      if (u > cuts_[0].at && u < cuts_[1].at) cuts_.push_back({u, mark});
-    }
+    for (std::size_t i = 0; i < roots.count; ++i) Add({lines.At(roots.t[i]), mark});
+  }
+  void Add(const Cut& cut) {
+    if (cut.at > cuts_[0].at && cut.at < cuts_[1].at) cuts_.push_back(cut);
   }
 
   std::vector<Cut> cuts_;

@@ -59,19 +59,25 @@ struct LineFamily {
 
   // The family of line(u) over the numbers from begin to end, in as many pieces as it takes to be smooth; calls
   // emit(LineFamily). Where line(u) is absent at a node, pieces are halved as long as
-  // hopeful(begin, end) says that they may hold something. Pieces of fit.least_part of the whole are given up, or taken
-  // as they are: near a number where lines turn without bound, as at total reflection.
-  template <typename Line, typename Hopeful, typename Emit>
+  // hopeful(begin, end) says that they may hold something. Pieces of fit.least_part of the whole, or that are not much
+  // longer than kOverlap, are given up, or taken as they are: near a number where lines turn without bound, as at total
+  // reflection. Calls give_up(begin, end) for the former.
+  template <typename Line, typename Hopeful, typename Emit, typename GiveUp>
   static void Fit(double begin, double end, const Line& line, const Hopeful& hopeful, const Emit& emit,
-                  const LineFit& fit = {}) {
+                  const GiveUp& give_up, const LineFit& fit) {
     const double least = std::max(fit.least_part * (end - begin), 16 * kOverlap);
-    FitPart(begin - kOverlap, end + kOverlap, least, fit, line, hopeful, emit);
+    FitPart(begin - kOverlap, end + kOverlap, least, fit, line, hopeful, emit, give_up);
+  }
+  template <typename Line, typename Hopeful, typename Emit>
+  static void Fit(double begin, double end, const Line& line, const Hopeful& hopeful, const Emit& emit) {
+    Fit(
+        begin, end, line, hopeful, emit, [](double, double) {}, LineFit{});
   }
 
  private:
-  template <typename Line, typename Hopeful, typename Emit>
+  template <typename Line, typename Hopeful, typename Emit, typename GiveUp>
   static void FitPart(double begin, double end, double least, const LineFit& fit, const Line& line,
-                      const Hopeful& hopeful, const Emit& emit) {
+                      const Hopeful& hopeful, const Emit& emit, const GiveUp& give_up) {
     LineFamily family;
     family.begin = begin, family.end = end;
     std::array<double, Bernstein::kCount> x{}, y{}, moment{};
@@ -85,12 +91,14 @@ struct LineFamily {
     if (whole) {
       family.x = Bernstein::Through(x), family.y = Bernstein::Through(y), family.moment = Bernstein::Through(moment);
       if (small || family.Fits(line, fit)) return emit(family);
-    } else if (small || !hopeful(begin, end)) {
+    } else if (!hopeful(begin, end)) {
       return;
+    } else if (small) {
+      return give_up(begin, end);
     }
     const double middle = 0.5 * (begin + end);
-    FitPart(begin, middle + kOverlap, least, fit, line, hopeful, emit);
-    FitPart(middle - kOverlap, end, least, fit, line, hopeful, emit);
+    FitPart(begin, middle + kOverlap, least, fit, line, hopeful, emit, give_up);
+    FitPart(middle - kOverlap, end, least, fit, line, hopeful, emit, give_up);
   }
 
   template <typename Line>

@@ -7,6 +7,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "core/math/check.h"
 #include "core/math/series.h"
 #include "core/plane/chains/chain.h"
 #include "core/plane/reference/specular_view.h"
@@ -17,10 +18,12 @@ namespace flatlight {
 // Value, first derivative, half the second.
 using Motion = Series<3>;
 
-// Of one receiver, which must outlive it, as the scene must.
+// Of one receiver, which must outlive it, as the scene must. Requires a scene without Béziers.
 class MovingWays {
  public:
-  MovingWays(const Scene& scene, const Receiver& receiver) : scene_(scene), receiver_(receiver) {}
+  MovingWays(const Scene& scene, const Receiver& receiver) : scene_(scene), receiver_(receiver) {
+    FLATLIGHT_DCHECK(!scene.traits().has_beziers);
+  }
 
   // As FollowWay: `flux` is the share. The directions move as `theta` does.
   std::optional<ChainRays<3>> Follow(const SpecularWay& way, const Motion& theta) const {

@@ -8,6 +8,7 @@
 #include "core/math/check.h"
 #include "core/math/tolerances.h"
 #include "core/plane/reference/error_sum.h"
+#include "core/plane/reference/index_growth.h"
 #include "core/plane/reference/quadrature.h"
 
 namespace flatlight {
@@ -15,6 +16,13 @@ namespace {
 
 // To which what the residual gives is reflected on, of itself.
 constexpr double kCorrectionTolerance = 1e-3;
+// Of radiance that may grow without end: its square is a number still.
+constexpr double kNoBound = 1e30;
+
+// Mirrors that emit may meet light again and again.
+double GrowthByGlow(const Scene& scene, std::size_t channel) {
+  return std::min(GlowGrowth(scene).value[channel], kNoBound);
+}
 
 }  // namespace
 
@@ -232,7 +240,7 @@ bool Radiosity::Solve(const Loop& loop) {
   }
   double emitted = scene_.environment().value[c];
   for (const Curve& curve : scene_.curves()) emitted = std::max(emitted, curve.radiance.value[c]);
-  errors_.brightest.value[c] = emitted + reflected;
+  errors_.brightest.value[c] = (emitted + reflected) * GrowthByGlow(scene_, c);
   keep(accumulation_->values(), light_);
   keep(accumulation_->before(), before_);
   keep(source(), first_);
@@ -265,7 +273,7 @@ bool Radiosity::Correct(const Loop& loop) {
     light_.Of(r / kNodes, c)[r % kNodes] += coefficients[r];
     most = std::max(most, std::abs(values[r]));
   }
-  errors_.brightest.value[c] += most;
+  errors_.brightest.value[c] += most * GrowthByGlow(scene_, c);
   accumulation_.reset();
   ++channel_;
   return false;

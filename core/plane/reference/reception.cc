@@ -71,8 +71,8 @@ Received Reception::At(const Receiver& receiver, const PanelMesh& mesh, const Pa
     std::optional<SpecularSight> own;
     if (sight == nullptr) sight = &own;
     if (!sight->has_value()) {
-      const std::vector<SpecularPiece>& pieces = specular_->view().From(receiver);
-      *sight = SpecularSight{pieces, specular_->view().lost(), specular_->view().unfollowed()};
+      *sight = SpecularSight{specular_->view().From(receiver), specular_->view().lost(), {}};
+      if (derivatives > 0) (*sight)->unfollowed = specular_->view().unfollowed();
     }
     if (derivatives == 0)
       AddSpecular(receiver, mesh, light, errors, **sight, sum);

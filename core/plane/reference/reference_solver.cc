@@ -49,14 +49,15 @@ std::unique_ptr<SolvedWorld> NewWorld(std::shared_ptr<const RayCaster> caster, c
   return world;
 }
 
-// How far ways over mirrors and through glass are followed at first.
-constexpr double kFirstShare = 1e-6;
+// How far ways over mirrors and through glass are followed at first; from panels, where arcs of Béziers have many,
+// less.
+constexpr double kFirstShare = 1e-6, kFirstShareOfBeziers = 1e-3;
 constexpr std::size_t kMostSights = std::size_t{1} << 28;  // Bytes.
 
 std::optional<SpecularViewOptions> SpecularOptions(const Scene& world, const ReferenceOptions& options) {
   if (IsDirectLight(world, options) || !HasSpecular(world)) return std::nullopt;
   SpecularViewOptions of_view;
-  of_view.least_share = kFirstShare;
+  of_view.least_share = world.traits().has_beziers ? kFirstShareOfBeziers : kFirstShare;
   return of_view;
 }
 
@@ -103,7 +104,7 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
   goes_further_.resize(points_.size());
   if (specular_) {
     limits_.resize(points_.size());
-    for (ViewLimit& limit : limits_) limit.least_share = specular_->least_share;
+    for (ViewLimit& limit : limits_) limit.least_share = kFirstShare;
   }
   const Scene& world = world_->caster->scene();
   if (world_->radiosity) {

@@ -40,8 +40,8 @@ struct ReferenceOptions {
 class ReferenceSolver final : public BoundedSolver {
  public:
   // The caster's scene has the world of `scene`. Requires CanFollow(scene), and no max_bounces where something is a
-  // mirror or glass and light is reflected. `before`: to go on from, of the
-  // same world, channels and bounces; its caster is used. Its panels are the first round's; null: there is none.
+  // mirror or glass and light is reflected, nor derivatives if there are Béziers as well. `before`: to go on from, of
+  // the same world, channels and bounces; its caster is used. Its panels are the first round's; null: there is none.
   ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared_ptr<const RayCaster> caster,
                   const ReferenceOptions& options, std::unique_ptr<SolvedWorld> before = nullptr);
   ~ReferenceSolver() override;

@@ -13,6 +13,7 @@
 #include "core/plane/chains/chain.h"
 #include "core/plane/chains/ray_series.h"
 #include "core/plane/intersect.h"
+#include "core/plane/reference/index_growth.h"
 
 namespace flatlight {
 namespace {
@@ -21,10 +22,10 @@ namespace {
 constexpr double kFit = 0.1, kBestFit = 1e-11, kWorstFit = 1e-6;
 // A stretch is eased if so near to its ends, as part of it, a squared cosine is less than that.
 constexpr double kBeside = 1e-6, kGrazing = 1e-4;
+// Numbers of directions differ by no more, for whatever reason.
+constexpr double kMostShift = 0.5;
 // A polynomial's root, and the place where total reflection begins.
 constexpr double kRootWithin = 1e-3;
-// Directions nearer to each other are the same but for rounding.
-constexpr double kSameDirection = 4e-15;
 
 bool Reflects(const Curve& curve) { return !curve.reflectance.IsBlack(); }
 
@@ -57,7 +58,9 @@ Vector2 FrontAt(const Element& arc, Point2 place) {
 // As TurnAt does it.
 bool Turn(const SpecularWay::Turning& turning, SpecularRay& ray) {
   const Element& element = *turning.element;
-  Vector2 normal = element.kind == Element::Kind::kSegment ? turning.front : FrontAt(element, ray.from);
+  Vector2 normal = turning.span                              ? turning.span->FrontAt(ray.place)
+                   : element.kind == Element::Kind::kSegment ? turning.front
+                                                             : FrontAt(element, ray.from);
   double cosine = -Dot(normal, ray.direction);
   const bool front = cosine > 0;
   if (!front) normal = -normal, cosine = -cosine;
@@ -84,10 +87,6 @@ bool Turn(const SpecularWay::Turning& turning, SpecularRay& ray) {
   return true;
 }
 
-ElementId LastOf(const Receiver& receiver, const SpecularWay& way) {
-  return way.links.empty() ? receiver.element : way.links.back().element;
-}
-
 bool IsOwnCircle(const Scene& scene, ElementId last, const Element& element) {
   return element.kind == Element::Kind::kArc && last != ElementId::kNone &&
          scene.element(last).carrier == element.carrier;
@@ -112,6 +111,24 @@ bool ComesFromCircle(const Scene& scene, const Receiver& receiver, const Specula
   return IsOwnCircle(scene, LastOf(receiver, way), scene.element(element));
 }
 
+ElementId LastOf(const Receiver& receiver, const SpecularWay& way) {
+  return way.links.empty() ? receiver.element : way.links.back().element;
+}
+
+bool TurnsAt(const Scene& scene, ElementId element) {
+  const Curve& curve = scene.curve_of(element);
+  return IsSpecular(curve.material) && Reflects(curve);
+}
+
+double Directions::Indistinct(double x) const {
+  const double theta = At(x), slope = Slope(x);
+  double shift = slope > 0 ? std::min(kSameDirection / slope, kMostShift) : kMostShift;
+  // Where the slope is all but none, it is larger beside.
+  while (std::abs(At(x + shift) - theta) > kSameDirection || std::abs(At(x - shift) - theta) > kSameDirection)
+    shift *= 0.5;
+  return shift;
+}
+
 std::optional<SpecularRay> FollowWay(const Scene& scene, const SpecularWay& way, double theta) {
   const SinCosValue turn = SinCos(theta);
   SpecularRay ray{way.image, turn.sin * way.tangent + turn.cos * way.normal, 1};
@@ -122,6 +139,14 @@ std::optional<SpecularRay> FollowWay(const Scene& scene, const SpecularWay& way,
     ray.from = ray.from + *distance * ray.direction;
   }
   for (const SpecularWay::Turning& turning : way.turnings) {
+    if (turning.span != nullptr) {
+      const std::optional<double> place = turning.span->Meet(ray.from, ray.direction, turning.front_side);
+      if (!place) return std::nullopt;
+      ray.place = *place;
+      ray.from = turning.span->At(*place);
+      if (!Turn(turning, ray)) return std::nullopt;
+      continue;
+    }
     const auto distance = Distance(*turning.element, ray.from, ray.direction, turning.far, turning.own_circle);
     if (!distance) return std::nullopt;
     ray.from = ray.from + *distance * ray.direction;
@@ -156,14 +181,18 @@ bool HasSpecular(const Scene& scene) {
 
 bool CanFollow(const Scene& scene) {
   if (scene.traits().lambertian) return true;
-  if (!scene.lights().empty() || scene.traits().has_beziers) return false;
+  if (!scene.lights().empty()) return false;
   return std::all_of(scene.curves().begin(), scene.curves().end(), [](const Curve& curve) {
     return !Reflects(curve) || IsSpecular(curve.material) || std::holds_alternative<Lambertian>(curve.material);
   });
 }
 
 SpecularView::SpecularView(const RayCaster& caster, const SpecularViewOptions& options)
-    : caster_(caster), scene_(caster.scene()), options_(options) {
+    : caster_(caster),
+      scene_(caster.scene()),
+      options_(options),
+      spans_(std::make_shared<BezierSpans>(scene_)),
+      growth_(IndexGrowth(scene_)) {
   const std::vector<Element>& elements = scene_.elements();
   for (std::size_t i = 0; i < elements.size(); ++i) {
     for (std::size_t j = i + 1; j < elements.size(); ++j) {
@@ -182,13 +211,14 @@ const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
   lost_ = 0;
   numbers_ = 0;
   const auto way = std::make_shared<SpecularWay>();
-  way->image = receiver.position;
+  way->image = receiver.position + receiver.offset;
+  way->spans = spans_;
   way->tangent = receiver.tangent;
   way->normal = receiver.normal;
   const auto directions =
       std::make_shared<const Directions>(Directions{-0.5 * std::numbers::pi, 0.5 * std::numbers::pi, false, nullptr});
   Fan(
-      way, directions, {0, 1, nullptr, nullptr}, [](double, double) { return true; }, LineFit{});
+      way, directions, {0, 1, nullptr, nullptr}, 1, [](double, double) { return true; }, LineFit{});
   std::size_t grown = 0;
   while (!beams_.empty()) {
     const Beam beam = beams_.top();
@@ -202,12 +232,14 @@ const std::vector<SpecularPiece>& SpecularView::From(const Receiver& receiver) {
     ++grown;
     Grow(receiver, beam);
   }
+  lost_ *= growth_;
+  for (UnfollowedBeam& beam : unfollowed_) beam.share *= growth_;
   return pieces_;
 }
 
 template <typename Hopeful>
 void SpecularView::Fan(const std::shared_ptr<const SpecularWay>& way,
-                       const std::shared_ptr<const Directions>& directions, const Stretch& stretch,
+                       const std::shared_ptr<const Directions>& directions, const Stretch& stretch, double worth,
                        const Hopeful& hopeful, const LineFit& fit) {
   const auto line = [&](double x) -> std::optional<DirectedLine> {
     const std::optional<SpecularRay> ray = FollowWay(scene_, *way, directions->At(x));
@@ -233,6 +265,12 @@ void SpecularView::Fan(const std::shared_ptr<const SpecularWay>& way,
               .begins = begin <= stretch.begin + LineFamily::kOverlap ? stretch.begins : between,
               .ends = end >= stretch.end - LineFamily::kOverlap ? stretch.ends : between});
       },
+      [&](double low, double high) {
+        const double begin = std::max(low, stretch.begin), end = std::min(high, stretch.end);
+        lost_ += worth * SinesBetween(directions->At(begin), directions->At(end));
+        unfollowed_.push_back({directions, begin, end, begin == stretch.begin ? stretch.begins : between,
+                               end == stretch.end ? stretch.ends : between, worth});
+      },
       fit);
 }
 
@@ -252,26 +290,34 @@ void SpecularView::Push(Beam beam) {
 
 void SpecularView::Grow(const Receiver& receiver, const Beam& beam) {
   Cuts cuts(beam.begin, beam.end);
-  const ElementId last = LastOf(receiver, *beam.way);
-  for (const Element& element : scene_.elements()) {
-    const bool own = last != ElementId::kNone && element.carrier == scene_.element(last).carrier;
-    if (own && element.kind == Element::Kind::kSegment) continue;
-    if (own || !PassBy(beam.lines, element)) cuts.AddEndsOf(element, beam.lines);
-  }
-  for (const Point2 crossing : crossings_) cuts.AddPassing(beam.lines, {crossing});
+  FindCuts(receiver, beam, cuts);
   std::optional<Met> met;
   Cuts::Cut begin{beam.begin, {}}, end = begin;
   const auto moving = [&](const Cuts::Cut& cut) -> std::shared_ptr<const MovingEnd> {
-    if (!cut.mark) return cut.at == beam.begin ? beam.begins : beam.ends;
-    return std::make_shared<const MovingEnd>(MovingEnd{.way = beam.way, .mark = *cut.mark});
+    if (cut.mark) return std::make_shared<const MovingEnd>(MovingEnd{.way = beam.way, .mark = *cut.mark});
+    if (cut.at == beam.begin) return beam.begins;
+    // Events of Béziers have no mark.
+    return cut.at == beam.end ? beam.ends : nullptr;
   };
   const auto finish = [&] {
-    if (met && end.at > begin.at) Meet(receiver, beam, *met, {begin.at, end.at, moving(begin), moving(end)});
+    if (!met || !(end.at > begin.at)) return;
+    if (met->doubtful) {
+      lost_ += MostOf(beam, begin.at, end.at);
+    } else {
+      Meet(receiver, beam, *met, {begin.at, end.at, moving(begin), moving(end)});
+    }
   };
+  const bool follows = scene_.bezier_distance() > 0;
   cuts.VisitCuts([&](const Cuts::Cut& from, const Cuts::Cut& to) {
-    const std::optional<Met> next = MetBy(receiver, beam, 0.5 * (from.at + to.at));
+    std::optional<Met> next;
+    if (follows && !beam.way->links.empty() && IsNarrow(beam, from.at, to.at)) {
+      next = Met{.doubtful = true};
+    } else {
+      next = MetBy(receiver, beam, 0.5 * (from.at + to.at));
+    }
     if (next != met) {
       finish();
+      if (follows && met && next) lost_ += DoubtAt(receiver, beam, *met, *next, from.at);
       met = next;
       begin = from;
     }
@@ -280,15 +326,8 @@ void SpecularView::Grow(const Receiver& receiver, const Beam& beam) {
   finish();
 }
 
-std::optional<SpecularView::Met> SpecularView::MetBy(const Receiver& receiver, const Beam& beam, double x) const {
-  const std::optional<SpecularRay> ray = FollowWay(scene_, *beam.way, beam.directions->At(x));
-  if (!ray) return std::nullopt;
-  const std::optional<Hit> hit = caster_.ClosestHit({ray->from, LastOf(receiver, *beam.way)}, ray->direction);
-  if (!hit) return Met{};
-  const Element& element = scene_.element(hit->element);
-  const bool far =
-      element.kind == Element::Kind::kArc && hit->distance > Dot(element.center - ray->from, ray->direction);
-  return Met{hit->element, Dot(hit->normal, ray->direction) < 0 ? Side::kFront : Side::kBack, far};
+double SpecularView::MostOf(const Beam& beam, double begin, double end) const {
+  return SinesBetween(beam.directions->At(begin), beam.directions->At(end)) * beam.share * beam.way->tint.Max();
 }
 
 void SpecularView::Meet(const Receiver& receiver, const Beam& beam, const Met& met, const Stretch& stretch) {
@@ -342,12 +381,18 @@ std::optional<double> SpecularView::SquaredCosine(const Receiver& receiver, cons
                                                   bool behind, double x) const {
   const std::optional<SpecularRay> ray = FollowWay(scene_, *beam.way, beam.directions->At(x));
   if (!ray) return std::nullopt;
-  const std::optional<double> distance = DistanceBehind(scene_, receiver, *beam.way, *ray, met.element, met.far);
-  if (!distance) return std::nullopt;
   const Element& element = scene_.element(met.element);
-  const Vector2 front = element.kind == Element::Kind::kSegment
-                            ? FrontOf(element)
-                            : FrontAt(element, ray->from + *distance * ray->direction);
+  Vector2 front;
+  if (const BezierSpan* const span = spans_->Of(met.element)) {
+    const std::optional<double> place = span->Meet(ray->from, ray->direction, met.side == Side::kFront);
+    if (!place) return std::nullopt;
+    front = span->FrontAt(*place);
+  } else {
+    const std::optional<double> distance = DistanceBehind(scene_, receiver, *beam.way, *ray, met.element, met.far);
+    if (!distance) return std::nullopt;
+    front = element.kind == Element::Kind::kSegment ? FrontOf(element)
+                                                    : FrontAt(element, ray->from + *distance * ray->direction);
+  }
   const double sine =
       Cross(front, ray->direction) / (behind ? IndexRatio(scene_.curve(element.curve).material, met.side) : 1);
   return (1 - sine) * (1 + sine);
@@ -372,17 +417,18 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
   const Element& element = scene_.element(met.element);
   const Curve& curve = scene_.curve(element.curve);
   const double ratio = IndexRatio(curve.material, met.side);
-  const double most = SinesBetween(beam.directions->At(begin), beam.directions->At(end)) * beam.share *
-                      beam.way->tint.Max() * (crosses ? std::max(1.0, 1 / ratio) : 1);
+  const double worth = beam.share * beam.way->tint.Max() * (crosses ? std::max(1.0, 1 / ratio) : 1);
+  const double most = SinesBetween(beam.directions->At(begin), beam.directions->At(end)) * worth;
   if (most < options_.least_share) {
     lost_ += most;
-    unfollowed_.push_back({beam.directions, begin, end, stretch.begins, stretch.ends,
-                           beam.share * beam.way->tint.Max() * (crosses ? std::max(1.0, 1 / ratio) : 1)});
+    unfollowed_.push_back({beam.directions, begin, end, stretch.begins, stretch.ends, worth});
     return;
   }
   auto way = std::make_shared<SpecularWay>(*beam.way);
   way->links.push_back({met.element, met.far, crosses});
-  const bool plane_mirror = element.kind == Element::Kind::kSegment && std::holds_alternative<Mirror>(curve.material);
+  const BezierSpan* const span = spans_->Of(met.element);
+  const bool plane_mirror =
+      span == nullptr && element.kind == Element::Kind::kSegment && std::holds_alternative<Mirror>(curve.material);
   const Vector2 front = element.kind == Element::Kind::kSegment ? FrontOf(element) : Vector2{};
   way->straight &= plane_mirror;
   if (way->straight) {
@@ -392,8 +438,8 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
   } else {
     const auto* glass = std::get_if<Dielectric>(&curve.material);
     const double ior = glass ? glass->ior : 1;
-    way->turnings.push_back({&element, front, ior, 1 / ior, glass != nullptr, met.far, crosses,
-                             IsOwnCircle(scene_, LastOf(receiver, *beam.way), element)});
+    way->turnings.push_back({&element, span, met.side == Side::kFront, front, ior, 1 / ior, glass != nullptr, met.far,
+                             crosses, IsOwnCircle(scene_, LastOf(receiver, *beam.way), element)});
   }
   if (crosses) {
     way->compression /= ratio;
@@ -436,9 +482,9 @@ void SpecularView::Turn(const Receiver& receiver, const Beam& beam, const Met& m
   fit.tolerance = std::clamp(kFit * options_.least_share / (beam.share * shared->tint.Max()), kBestFit, kWorstFit);
   fit.least_part = std::min(options_.least_share / most, 1e-3);
   // Nor better than directions are.
-  fit.shift = [&](double x) { return kSameDirection / std::max(directions->Slope(x), kSameDirection); };
-  Fan(shared, directions, eased ? Stretch{0, 1, nullptr, nullptr} : stretch, hopeful, fit);
-  // What was given up beside where rays begin to fail.
+  fit.shift = [&](double x) { return directions->Indistinct(x); };
+  Fan(shared, directions, eased ? Stretch{0, 1, nullptr, nullptr} : stretch, worth, hopeful, fit);
+  // What was taken as it is beside where rays begin to fail.
   if (some_fail) lost_ += 2 * fit.least_part * most;
 }
 

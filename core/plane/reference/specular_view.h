@@ -14,6 +14,7 @@
 #include "core/plane/chains/chain_link.h"
 #include "core/plane/chains/line_family.h"
 #include "core/plane/ray_caster.h"
+#include "core/plane/reference/bezier_span.h"
 #include "core/scene/scene.h"
 
 namespace flatlight {
@@ -29,10 +30,13 @@ struct SpecularWay {
   // The receiver as plane mirrors show it: those of the first links that are, in a row.
   Point2 image;
   Vector2 tangent, normal;
+  std::shared_ptr<const BezierSpans> spans;  // Of the scene: turnings point to them.
   // Of the links after them, what it takes to follow rays.
   struct Turning {
     const Element* element = nullptr;
-    Vector2 front;  // Unit normal of a segment.
+    const BezierSpan* span = nullptr;  // In place of the element, if it follows a Bézier.
+    bool front_side = false;           // On which side that is met.
+    Vector2 front;                     // Unit normal of a segment.
     double ior = 1;
     double inverse_ior = 1;
     bool glass = false;
@@ -49,12 +53,17 @@ struct SpecularRay {
   Point2 from;
   Vector2 direction;
   double share = 1;
+  double place = 0;  // Where it starts on a Bézier's span, if it does.
 };
 
 // Of the direction theta, from the receiver's normal toward its tangent. Absent if it misses a link's line or circle,
 // or is totally reflected where it should cross.
 std::optional<SpecularRay> FollowWay(const Scene& scene, const SpecularWay& way, double theta);
 
+// Where rays of a way start behind it: on its last link or, without one, on the receiver's element.
+ElementId LastOf(const Receiver& receiver, const SpecularWay& way);
+// Whether rays go on from an element, by reflection or passage.
+bool TurnsAt(const Scene& scene, ElementId element);
 // Of the indices of refraction behind a curve and before it, for light that comes from a side; 1 for mirrors.
 double IndexRatio(const Material& material, Side side);
 
@@ -95,6 +104,9 @@ struct Directions {
   // The number by which the outer knows the direction; theta, if there is none.
   double Outward(double x) const { return from + (to - from) * (eased ? x * x * (3 - 2 * x) : x); }
   double At(double x) const { return outer ? outer->At(Outward(x)) : Outward(x); }
+  // Directions nearer to each other are the same but for rounding; numbers that differ by no more have such directions.
+  static constexpr double kSameDirection = 4e-15;
+  double Indistinct(double x) const;
   // d(theta)/dx.
   double Slope(double x) const {
     const double slope = (to - from) * (eased ? 6 * x * (1 - x) : 1);
@@ -129,8 +141,10 @@ struct UnfollowedBeam {
 // What is seen from a point over mirrors and through glass.
 struct SpecularSight {
   std::vector<SpecularPiece> pieces;
-  double lost = 0;                         // What else could have come: irradiance per radiance,
-  std::vector<UnfollowedBeam> unfollowed;  // in these, and beside rays that fail.
+  // What else could have come: irradiance per radiance, in beams that are not followed, beside rays that fail and where
+  // it is not known what is met.
+  double lost = 0;
+  std::vector<UnfollowedBeam> unfollowed;  // Those beams, where derivatives are wanted.
 
   std::size_t bytes() const;
 };
@@ -138,7 +152,7 @@ struct SpecularSight {
 // Whether a curve of the scene is a mirror or glass.
 bool HasSpecular(const Scene& scene);
 // Whether all that reflects is Lambertian, a mirror or glass, and what is seen over these can be followed: there are no
-// Béziers then, nor lights without a surface.
+// lights without a surface then.
 bool CanFollow(const Scene& scene);
 
 struct SpecularViewOptions {
@@ -184,13 +198,24 @@ class SpecularView {
     ElementId element = ElementId::kNone;
     Side side = Side::kFront;
     bool far = false;
+    bool doubtful = false;  // What is met is not known.
+    double distance = 0;    // Of some ray that meets it.
     friend bool operator==(const Met& a, const Met& b) {
-      return a.element == b.element && a.side == b.side && a.far == b.far;
+      return a.element == b.element && a.side == b.side && a.far == b.far && a.doubtful == b.doubtful;
     }
   };
 
   void Grow(const Receiver& receiver, const Beam& beam);
+  void FindCuts(const Receiver& receiver, const Beam& beam, Cuts& cuts) const;
   std::optional<Met> MetBy(const Receiver& receiver, const Beam& beam, double x) const;
+  // Most irradiance per radiance of a part of a beam's rays.
+  double MostOf(const Beam& beam, double begin, double end) const;
+  bool IsNarrow(const Beam& beam, double from, double to) const;
+  // Most irradiance per radiance of those that may meet the other thing, for elements are not quite where the Béziers
+  // are that they follow: at the number where a beam passes from one thing to another.
+  double DoubtAt(const Receiver& receiver, const Beam& beam, const Met& before, const Met& after, double x) const;
+  std::optional<double> DistanceTo(const Receiver& receiver, const Beam& beam, const Met& met,
+                                   const SpecularRay& ray) const;
   // Of a beam.
   struct Stretch {
     double begin = 0, end = 0;
@@ -205,15 +230,18 @@ class SpecularView {
   // The same at the places that a polynomial goes through between two numbers; absent if one of them is.
   std::optional<std::array<double, Bernstein::kCount>> SquaresBehind(const Receiver& receiver, const Beam& beam,
                                                                      const Met& met, double from, double to) const;
-  // Pushes the beams of a way's rays in a stretch of directions; `hopeful` as in LineFamily::Fit.
+  // Pushes the beams of a way's rays in a stretch of directions; as LineFamily::Fit. What is given up is not followed:
+  // `worth` times its part of the half circle may be lost.
   template <typename Hopeful>
   void Fan(const std::shared_ptr<const SpecularWay>& way, const std::shared_ptr<const Directions>& directions,
-           const Stretch& stretch, const Hopeful& hopeful, const LineFit& fit);
+           const Stretch& stretch, double worth, const Hopeful& hopeful, const LineFit& fit);
   void Push(Beam beam);
 
   const RayCaster& caster_;
   const Scene& scene_;
   SpecularViewOptions options_;
+  std::shared_ptr<const BezierSpans> spans_;
+  double growth_;                  // Of radiance, where light goes on to where it is slower.
   std::vector<Point2> crossings_;  // Points that two elements have in common, inside both.
   std::priority_queue<Beam, std::vector<Beam>, Weaker> beams_;
   std::size_t numbers_ = 0;

@@ -52,7 +52,7 @@ TruthChoice ChooseTruth(const TruthQuestion& question, const v1::GetCapabilities
   const bool reflects = question.max_reflectance > 0;
   const auto exact = Offered(server, "exact");
   if (exact && (!reflects || question.max_bounces == 0U)) return Rendered("exact", *exact, question.max_bounces);
-  if (const auto reference = Offered(server, "reference"); reference && question.lambertian)
+  if (const auto reference = Offered(server, "reference"); reference && question.reference)
     return Rendered("reference", *reference, question.max_bounces);
   TruthChoice choice;
   if (exact && !question.max_bounces) {

@@ -23,7 +23,7 @@ struct TruthChoice {
 
 struct TruthQuestion {
   double max_reflectance = 0;                // Of the scene.
-  bool lambertian = true;                    // Whether nothing but Lambertian curves reflects in it.
+  bool reference = true;                     // Whether method `reference` takes it, with the bounces.
   std::optional<std::uint32_t> max_bounces;  // As the user wants it.
   const v1::RenderResult* file = nullptr;    // The user's truth for the scene, if there is one.
   std::string file_name;                     // "file 0123456789ab".

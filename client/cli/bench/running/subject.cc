@@ -112,8 +112,10 @@ class Preparation {
   absl::Status Choose(const v1::ValidateSceneResponse& scene, Subject& subject) {
     TruthQuestion question;
     question.max_reflectance = scene.traits().max_reflectance();
-    question.lambertian = scene.traits().lambertian();
     if (settings_.has_max_bounces()) question.max_bounces = settings_.max_bounces();
+    const auto reference = TakesReference(scene.traits(), subject);
+    if (!reference.ok()) return reference.status();
+    question.reference = *reference;
     question.samples = options_.truth_samples;
     if (TruthFile* file = FileFor(scene)) {
       file->used = true;
@@ -130,6 +132,22 @@ class Preparation {
       if (settings_.has_threads()) subject.truth.render->set_threads(settings_.threads());
     }
     return absl::OkStatus();
+  }
+
+  // What it can do is the server's to say.
+  absl::StatusOr<bool> TakesReference(const v1::SceneTraits& traits, const Subject& subject) {
+    // Over mirrors and glass each piece is much work: of many a truth is not to be had while one waits.
+    constexpr double kMostPieces = 128;
+    if (!traits.lambertian() && traits.elements() > kMostPieces) return false;
+    const auto& methods = connection_.capabilities().methods();
+    if (std::find(methods.begin(), methods.end(), "reference") == methods.end()) return false;
+    v1::Settings settings;
+    settings.set_method(v1::Settings::REFERENCE);
+    if (settings_.has_max_bounces()) settings.set_max_bounces(settings_.max_bounces());
+    const auto plan = Explain(subject, settings);
+    if (plan.ok()) return true;
+    if (plan.status().code() == absl::StatusCode::kInvalidArgument) return false;
+    return plan.status();
   }
 
   absl::Status AddMethods(Subject& subject) {

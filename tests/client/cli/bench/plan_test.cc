@@ -43,7 +43,7 @@ TEST(TruthChoice, ASceneThatReflectsIsBenchedWithDirectLight) {
   EXPECT_THAT(choice.note, HasSubstr("--truth"));
 }
 
-TEST(TruthChoice, ReferenceWhereLambertianCurvesReflect) {
+TEST(TruthChoice, ReferenceWhereItTakesTheScene) {
   const v1::GetCapabilitiesResponse server = Server({"exact", "path-tracing", "reference"});
   TruthQuestion question;
   question.max_reflectance = 0.5;
@@ -53,7 +53,7 @@ TEST(TruthChoice, ReferenceWhereLambertianCurvesReflect) {
   EXPECT_EQ(ChooseTruth(question, server).render->max_bounces(), 3U);
   EXPECT_EQ(ChooseTruth({}, server).name, "exact") << "nothing reflects";
   question.max_bounces.reset();
-  question.lambertian = false;
+  question.reference = false;
   EXPECT_EQ(ChooseTruth(question, server).name, "exact");
   EXPECT_EQ(ChooseTruth(question, server).max_bounces, 0U);
 }

@@ -84,6 +84,24 @@ void ExpectDerivativesOfNeighbours(const SceneMaker& scene, Point2 middle, doubl
   }
 }
 
+// Irradiance is found in another way where derivatives are asked for.
+TEST(SpecularDerivativesTest, IrradianceIsThatWithoutDerivatives) {
+  SceneMaker maker;
+  maker.Segment("mirror", {0, 1}, {0, -1}, MirrorOf(0.9));
+  maker.Polyline("walls", {{0, -1}, {1.5, -1}, {1.5, 1}, {0, 1}}, false, {.reflectance = {0.6}});
+  maker.Segment("lamp", {0.4, 0.5}, {0.7, 0.6}, {.radiance = {5}, .two_sided = true});
+  maker.Probe("walls", 8);
+  ReferenceOptions without = Options(0.1), with = Options(0.1);
+  without.derivatives = 0, with.derivatives = 1;
+  const SolvedReference left = SolveReference(maker.Build(), without), right = SolveReference(maker.Build(), with);
+  ASSERT_EQ(left.rounds, right.rounds);
+  for (std::size_t i = 0; i < left.values.size(); ++i) {
+    const ExactValue &l = left.values[i], &r = right.values[i];
+    EXPECT_NEAR(l.irradiance[0], r.irradiance[0], 1e-4 * l.irradiance_error[0]) << i;
+    EXPECT_NEAR(l.irradiance_error[0], r.irradiance_error[0], 0.1 * l.irradiance_error[0]) << i;
+  }
+}
+
 // Half a room beside a perfect mirror is a whole room.
 TEST(SpecularDerivativesTest, APerfectMirrorCompletesARoom) {
   const Look grey{.reflectance = {0.6}}, lamp{.radiance = {5}, .two_sided = true}, plate{.reflectance = {0.3}};
