@@ -34,8 +34,6 @@ constexpr std::size_t kMostMemory = std::size_t{1} << 30;
 // A round that brings the error down by less than this is idle.
 constexpr double kIdle = 0.9;
 constexpr int kMostIdleRounds = 3;
-// Of what errors are relative to, and of the probe's mean.
-constexpr double kFloor = 0.01;
 // An error that is larger yet tells nothing: there is no light.
 constexpr double kFarthest = 1e6;
 constexpr std::size_t kPiecesPerThread = 4;
@@ -62,10 +60,6 @@ double LargestToStay(std::vector<double> shares) {
     if (sum <= allowed || share <= kWaits * shares.back()) stays = share;
   }
   return stays;
-}
-
-double Relative(double error, double size) {
-  return error == 0 ? 0 : size > 0 ? error / size : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -107,21 +101,13 @@ GlossySolver::GlossySolver(std::shared_ptr<const Scene> scene, std::shared_ptr<c
       world_(caster_->scene()),
       options_(options),
       channels_(static_cast<std::size_t>(options.channels)),
+      points_(*scene_, options.most_points),
       charts_(ChartsOf(world_)),
       meetings_(Meetings(world_, charts_)),
       lights_(*caster_, {.derivatives = 0}),
       tolerance_(std::clamp(kTolerance * options.target_error, kLeastTolerance, kTolerance)) {
   FLATLIGHT_DCHECK(options_.derivatives == 0 && !options_.max_bounces);
-  for (std::size_t p = 0; p < scene_->probes().size(); ++p) {
-    const std::vector<Receiver>& receivers = scene_->probes()[p].receivers;
-    const std::size_t count = std::min(receivers.size(), options_.most_points);
-    for (std::size_t i = 0; i < count; ++i) {
-      points_.push_back(&receivers[(2 * i + 1) * receivers.size() / (2 * count)]);
-      probe_of_point_.push_back(p);
-    }
-    points_of_probe_.push_back(static_cast<double>(count));
-  }
-  direct_.resize(points_.size());
+  direct_.resize(points_.receivers.size());
   finder_.emplace(*caster_, charts_, meetings_);
   found_.resize(finder_->count());
 }
@@ -159,7 +145,7 @@ void GlossySolver::Return(std::unique_ptr<Worker> worker) {
 
 std::size_t GlossySolver::Count() const {
   if (step_ == Step::kEvents) return found_.size();
-  if (step_ == Step::kDirect || step_ == Step::kPoints) return points_.size();
+  if (step_ == Step::kDirect || step_ == Step::kPoints) return points_.receivers.size();
   return IsWhole() ? 1 : radiosity_->mesh().panels().size();
 }
 
@@ -198,8 +184,8 @@ bool GlossySolver::StepWhole(Executor& executor, int threads) {
 void GlossySolver::Work(Worker& worker, std::size_t i) {
   switch (step_) {
     case Step::kDirect:
-      direct_[i] = worker.exact.Evaluate(*points_[i]);
-      lights_.Add(*points_[i], direct_[i]);
+      direct_[i] = worker.exact.Evaluate(*points_.receivers[i]);
+      lights_.Add(*points_.receivers[i], direct_[i]);
       return;
     case Step::kEvents:
       return finder_->Find(i, found_[i]);
@@ -218,7 +204,7 @@ void GlossySolver::Work(Worker& worker, std::size_t i) {
 }
 
 double GlossySolver::SizeAt(const ExactValue& value, std::size_t point, int channel) const {
-  const double floor = means_.empty() ? 0 : kFloor * means_[probe_of_point_[point]][channel];
+  const double floor = means_.empty() ? 0 : kFloor * means_[points_.probes[point]][channel];
   return std::max(value.irradiance[channel], floor);
 }
 
@@ -228,7 +214,7 @@ void GlossySolver::Gather(Worker& worker, std::size_t point) {
   for (auto& of_channel : worker.importance) of_channel.resize(cells, 0.0);
   worker.seen.assign(cells, 0.0);
   worker.known.assign(channels_ * cells, 0.0);
-  worker.incoming.From(*points_[point], radiosity_->mesh(), false, std::numbers::pi);
+  worker.incoming.From(*points_.receivers[point], radiosity_->mesh(), false, std::numbers::pi);
   Spectrum reflected, error, brightest;
   for (const IncomingRay& ray : worker.incoming.rays()) {
     if (ray.cell == IncomingRay::kNoCell) continue;
@@ -245,7 +231,7 @@ void GlossySolver::Gather(Worker& worker, std::size_t point) {
   for (const VisiblePiece& piece : worker.incoming.pieces()) {
     if (world_.curve_of(piece.element).reflectance.IsBlack()) continue;
     for (const PieceEnd* end : {&piece.begin, &piece.end})
-      coordinates += worker.end_errors.Add(*points_[point], piece.element, *end, 1).s;
+      coordinates += worker.end_errors.Add(*points_.receivers[point], piece.element, *end, 1).s;
   }
   for (std::size_t c = 0; c < channels_; ++c) {
     ErrorSum of_residuals;
@@ -280,7 +266,7 @@ void GlossySolver::NextStep() {
   if (step_ == Step::kPoints) return EndPoints();
   step_ = static_cast<Step>(static_cast<int>(step_) + 1);
   if (step_ == Step::kSpread) radiosity_->EndCheck();
-  if (step_ == Step::kPoints) coming_.assign(points_.size(), {});
+  if (step_ == Step::kPoints) coming_.assign(points_.receivers.size(), {});
 }
 
 void GlossySolver::StartFirstMesh() {
@@ -303,15 +289,11 @@ void GlossySolver::StartMesh(CellMesh mesh, std::vector<std::vector<double>> sta
 }
 
 void GlossySolver::EndPoints() {
-  means_.assign(scene_->probes().size(), {});
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    Spectrum& mean = means_[probe_of_point_[i]];
-    mean = mean + (1 / points_of_probe_[probe_of_point_[i]]) * coming_[i].irradiance;
-  }
+  means_ = points_.Means(coming_);
   values_.swap(coming_);
   const double before = relative_error_;
   relative_error_ = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i)
+  for (std::size_t i = 0; i < points_.receivers.size(); ++i)
     for (int c = 0; c < options_.channels; ++c)
       relative_error_ = std::max(relative_error_, Relative(values_[i].irradiance_error[c], SizeAt(values_[i], i, c)));
   if (rounds_++ == 0) first_relative_error_ = relative_error_;

@@ -19,6 +19,7 @@
 #include "core/plane/ray_caster.h"
 #include "core/plane/reference/bounded_solver.h"
 #include "core/plane/reference/chart.h"
+#include "core/plane/reference/chosen_points.h"
 #include "core/plane/reference/reference_solver.h"
 #include "core/plane/reference/visibility_events.h"
 
@@ -80,15 +81,13 @@ class GlossySolver final : public BoundedSolver {
   const Scene& world_;
   ReferenceOptions options_;
   std::size_t channels_;
+  ChosenPoints points_;
   std::vector<Chart> charts_;
   std::vector<std::vector<double>> meetings_;
   std::optional<EventFinder> finder_;  // Until the first mesh.
   std::vector<std::vector<EventPlace>> found_;
   Events kinks_;
   LightSolver lights_;
-  std::vector<const Receiver*> points_;
-  std::vector<std::size_t> probe_of_point_;
-  std::vector<double> points_of_probe_;
   std::vector<ExactValue> direct_;  // By point.
   std::vector<Spectrum> means_;     // By probe, of irradiance after the round before.
   double tolerance_;                // To which equations are solved.

@@ -3,6 +3,7 @@
 #define FLATLIGHT_CORE_PLANE_REFERENCE_BOUNDED_SOLVER_H_
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -40,6 +41,13 @@ class BoundedSolver {
   // What it knows of the world, for solvers to come; null: nothing that these can use. Requires kReached; but for
   // values() and errors nothing is to be called afterwards.
   virtual std::unique_ptr<SolvedWorld> TakeWorld() = 0;
+
+ protected:
+  // Of what errors are relative to, and of the probe's mean.
+  static constexpr double kFloor = 0.01;
+  static double Relative(double error, double size) {
+    return error == 0 ? 0 : size > 0 ? error / size : std::numeric_limits<double>::infinity();
+  }
 };
 
 }  // namespace flatlight

@@ -35,7 +35,7 @@ constexpr double kLeastShare = 1e-15;
 
 // What the error of a point is relative to.
 double ReferenceSolver::SizeAt(std::size_t i, int c) const {
-  return std::max(values_[i].irradiance[c], kFloor * means_[probe_of_point_[i]][c]);
+  return std::max(values_[i].irradiance[c], kFloor * means_[points_.probes[i]][c]);
 }
 
 // Where what ways could have brought that were not followed is much of a bound, these are: from the point on, or from
@@ -49,7 +49,7 @@ void ReferenceSolver::FollowFurther() {
     of_rows[c] = world_->radiosity->UnfollowedPart(static_cast<std::size_t>(c));
   const bool rows_may =
       specular_->least_share > kLeastShare && world_->radiosity->memory_of_all() < kMostMemory / kMoreWays;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
+  for (std::size_t i = 0; i < points_.receivers.size(); ++i) {
     if (dark_waits_ && dark_[i] != 0) continue;
     ViewLimit& limit = limits_[i];
     double factor = 1, factor_of_rows = 1, unfollowed = 0;
@@ -79,19 +79,14 @@ void ReferenceSolver::FollowFurther() {
 }
 
 void ReferenceSolver::EndPoints() {
-  std::vector<Spectrum> means(scene_->probes().size());
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    Spectrum& mean = means[probe_of_point_[i]];
-    mean = mean + (1 / points_of_probe_[probe_of_point_[i]]) * coming_[i].irradiance;
-  }
+  means_ = points_.Means(coming_);
   double brightest = 0;
-  for (const Spectrum& mean : means) brightest = std::max({brightest, mean[0], mean[1], mean[2]});
-  means_ = std::move(means);
+  for (const Spectrum& mean : means_) brightest = std::max({brightest, mean[0], mean[1], mean[2]});
   values_.swap(coming_);
   FollowFurther();
   relative_error_ = 0;
   double to_improve = 0, of_dark = 0;  // The largest of points that still improve.
-  for (std::size_t i = 0; i < points_.size(); ++i) {
+  for (std::size_t i = 0; i < points_.receivers.size(); ++i) {
     double relative = 0;
     dark_[i] = 1;
     for (int c = 0; c < options_.channels; ++c) {

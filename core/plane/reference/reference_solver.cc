@@ -82,28 +82,20 @@ ReferenceSolver::ReferenceSolver(std::shared_ptr<const Scene> scene, std::shared
     : scene_(std::move(scene)),
       options_(options),
       channels_(static_cast<std::size_t>(options.channels)),
+      points_(*scene_, options.most_points),
       world_(before ? std::move(before) : NewWorld(std::move(caster), options)),
       tolerance_(std::clamp(kTolerance * options.target_error, kLeastTolerance, kTolerance)),
       coarse_tolerance_(world_->radiosity ? tolerance_ : std::max(tolerance_, kFirstTolerance)),
       lights_(*world_->caster, {.derivatives = options.derivatives}),
       specular_(SpecularOptions(world_->caster->scene(), options)) {
-  for (std::size_t p = 0; p < scene_->probes().size(); ++p) {
-    const std::vector<Receiver>& receivers = scene_->probes()[p].receivers;
-    const std::size_t count = std::min(receivers.size(), options_.most_points);
-    for (std::size_t i = 0; i < count; ++i) {
-      points_.push_back(&receivers[(2 * i + 1) * receivers.size() / (2 * count)]);
-      probe_of_point_.push_back(p);
-    }
-    points_of_probe_.push_back(static_cast<double>(count));
-  }
-  direct_.resize(points_.size());
-  has_direct_.resize(points_.size());
-  relative_before_.resize(points_.size());
-  idle_rounds_.resize(points_.size());
-  dark_.resize(points_.size());
-  goes_further_.resize(points_.size());
+  direct_.resize(points_.receivers.size());
+  has_direct_.resize(points_.receivers.size());
+  relative_before_.resize(points_.receivers.size());
+  idle_rounds_.resize(points_.receivers.size());
+  dark_.resize(points_.receivers.size());
+  goes_further_.resize(points_.receivers.size());
   if (specular_) {
-    limits_.resize(points_.size());
+    limits_.resize(points_.receivers.size());
     for (ViewLimit& limit : limits_) limit.least_share = kFirstShare;
   }
   const Scene& world = world_->caster->scene();
@@ -137,7 +129,8 @@ std::vector<ExactValue> ReferenceSolver::FirstValues() const {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!reflects && has_direct_[i] != 0) continue;
     values[i].irradiance_error = values[i].irradiance_error + 2 * brightest;
-    if (has_direct_[i] == 0) values[i].irradiance_error = values[i].irradiance_error + LightsAt(world, *points_[i]);
+    if (has_direct_[i] == 0)
+      values[i].irradiance_error = values[i].irradiance_error + LightsAt(world, *points_.receivers[i]);
     // Beside a lamp it is infinite, or no number.
     for (double& error : values[i].irradiance_error.value)
       if (!(error < kUnbounded)) error = kUnbounded;
@@ -179,7 +172,7 @@ void ReferenceSolver::StartMesh(PanelMesh mesh) {
 }
 
 void ReferenceSolver::StartRound() {
-  coming_.assign(points_.size(), {});
+  coming_.assign(points_.receivers.size(), {});
   shares_.assign(panels(), 0.0);
   split_.assign(panels(), 0);
   places_.assign(panels(), {});
@@ -214,7 +207,7 @@ void ReferenceSolver::StartFirstMesh() {
 
 std::size_t ReferenceSolver::Count() const {
   if (step_ == Step::kEvents) return found_.size();
-  if (step_ == Step::kDirect || step_ == Step::kPoints) return points_.size();
+  if (step_ == Step::kDirect || step_ == Step::kPoints) return points_.receivers.size();
   // Of what is seen over mirrors and through glass a single row is much work.
   if (step_ == Step::kRows && specular_) return panels() * kRowParts;
   return IsWhole() ? 1 : panels();
@@ -258,8 +251,8 @@ bool ReferenceSolver::StepWhole(Executor& executor, int threads) {
 void ReferenceSolver::Work(Worker& worker, std::size_t i) {
   switch (step_) {
     case Step::kDirect:
-      direct_[i] = worker.exact.Evaluate(*points_[i]);
-      lights_.Add(*points_[i], direct_[i]);
+      direct_[i] = worker.exact.Evaluate(*points_.receivers[i]);
+      lights_.Add(*points_.receivers[i], direct_[i]);
       has_direct_[i] = 1;
       return;
     case Step::kEvents:
@@ -307,7 +300,7 @@ void ReferenceSolver::FindSlopes(Worker& worker, std::size_t i) {
 }
 
 void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
-  const Receiver& receiver = *points_[point];
+  const Receiver& receiver = *points_.receivers[point];
   worker.shares.resize(panels(), 0.0);
   worker.importance.resize(panels(), 0.0);
   ExactValue value = direct_[point];
@@ -338,7 +331,7 @@ void ReferenceSolver::Gather(Worker& worker, std::size_t point) {
   for (int c = 0; c < kMaxChannels; ++c) {
     value.irradiance[c] = std::max(value.irradiance[c], 0.0);
     size = std::max({size, value.irradiance[c], value.irradiance_error[c]});
-    if (!means_.empty()) size = std::max(size, kFloor * means_[probe_of_point_[point]][c]);
+    if (!means_.empty()) size = std::max(size, kFloor * means_[points_.probes[point]][c]);
   }
   coming_[point] = value;
   // What comes no nearer to the target has no say in what to split.

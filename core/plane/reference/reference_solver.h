@@ -18,6 +18,7 @@
 #include "core/plane/exact/light_solver.h"
 #include "core/plane/ray_caster.h"
 #include "core/plane/reference/bounded_solver.h"
+#include "core/plane/reference/chosen_points.h"
 #include "core/plane/reference/radiosity.h"
 #include "core/plane/reference/solved_world.h"
 #include "core/plane/reference/specular_view.h"
@@ -62,16 +63,11 @@ class ReferenceSolver final : public BoundedSolver {
 
  private:
   struct Worker;
-  // Of what errors are relative to, and of the probe's mean.
-  static constexpr double kFloor = 0.01;
   // A point that is no better after so many rounds has no say any more.
   static constexpr int kMostIdleRounds = 3;
   // To which equations are solved in the end: of the target error; and at least.
   static constexpr double kTolerance = 1e-3;
   static constexpr double kLeastTolerance = 1e-15;
-  static double Relative(double error, double size) {
-    return error == 0 ? 0 : size > 0 ? error / size : std::numeric_limits<double>::infinity();
-  }
   // How far ways over mirrors and glass are followed from a point, and what that leaves of its bound.
   struct ViewLimit {
     double least_share = 0;
@@ -119,6 +115,7 @@ class ReferenceSolver final : public BoundedSolver {
   std::shared_ptr<const Scene> scene_;
   ReferenceOptions options_;
   std::size_t channels_;
+  ChosenPoints points_;
   std::unique_ptr<SolvedWorld> world_;
   std::optional<EventFinder> finder_;  // Until the first mesh.
   std::vector<std::vector<EventPlace>> found_;
@@ -126,10 +123,7 @@ class ReferenceSolver final : public BoundedSolver {
   double coarse_tolerance_;  // in this round.
   LightSolver lights_;
   std::optional<SpecularViewOptions> specular_;  // Of rows.
-  std::vector<const Receiver*> points_;
-  std::vector<std::size_t> probe_of_point_;
-  std::vector<double> points_of_probe_;
-  std::vector<ExactValue> direct_;  // By point.
+  std::vector<ExactValue> direct_;               // By point.
   std::vector<char> has_direct_;
   std::vector<Spectrum> means_;  // By probe, of irradiance after the round before.
 
